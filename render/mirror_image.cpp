@@ -1,15 +1,44 @@
 #include "render/mirror_image.h"
 
+#include <fmt/format.h>
+
+#include "core/base/error.h"
+#include "core/light/integrator_table.h"
 #include "core/passes/mirrored_view.h"
 #include "core/passes/pixel_layers.h"
 #include "render/scene_rendering.h"
 
 namespace uw {
 
+namespace {
+
+// What is made for one camera, whose rays lead forwards, is not made for its mirror image.
+void check_mirrored(const SceneDesc& scene) {
+    const auto refuse = [&](const char* key, const char* why, const char* mend) {
+        throw InputError(fmt::format(
+            "{}: {} with a water surface that reflects, where the camera sees it: {}; {}",
+            scene.file.filename().string(), key, why, mend));
+    };
+    if (integrator_kind(scene.render.integrator).sums_slabs)
+        refuse("render.integrator: planes", "its slabs lie across the camera's axis",
+               "use volume or reference");
+    if (scene.render.output == RenderDesc::Output::paper)
+        refuse("render.output: paper", "its light is weighted by the distance from the camera",
+               "use another output");
+    if (scene.water.snow)
+        refuse("water.snow", "particles are not placed in the mirror",
+               "remove one of them, or point the camera down");
+}
+
+}  // namespace
+
 void run_light_passes(const AssembledScene& scene, PassList& passes, Rendering& rendering) {
-    passes.run(Pass::Of::light, rendering);
     const RaySource& rays = rendering.pixels.rays();
-    if (!scene.water_surface || !MirroredView::may_see(rays, *scene.water_surface)) return;
+    const bool has_mirror =
+        scene.water_surface && MirroredView::may_see(rays, *scene.water_surface);
+    if (has_mirror) check_mirrored(scene.desc());
+    passes.run(Pass::Of::light, rendering);
+    if (!has_mirror) return;
     const MirroredView view(rays, scene.lit());
     PixelRenderer pixels = pixel_renderer(scene, view, rendering.pixels.transport(),
                                           rendering.pixels.in_scatter().parts());

@@ -64,8 +64,10 @@ FineBeams::FineBeams(const RaySource& rays, const std::vector<Lamp>& emitters) :
     for (std::size_t i = 0; i < emitters.size(); ++i) {
         const Lamp& emitter = emitters[i];
         if (emitter.sunlight()) continue;
-        // The points of a lamp differ by their places alone.
-        if (i == 0 || emitters[i - 1].index() != emitter.index()) beam = beam_of(emitter);
+        // The points of a lamp differ by their places alone, and so do their mirror images.
+        if (i == 0 || emitters[i - 1].index() != emitter.index() ||
+            emitters[i - 1].is_mirrored() != emitter.is_mirrored())
+            beam = beam_of(emitter);
         if (!beam) continue;
         beam->apex = emitter.position();
         beams_.push_back(*beam);

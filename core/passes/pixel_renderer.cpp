@@ -390,8 +390,9 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
     for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(sample, j)) continue;
         const Lamp& emitter = light.emitters()[j];
-        result.lit += weight * light.visible_share(sample, j) * emitter.share() /
-                      static_cast<double>(lamp_count());
+        if (!emitter.is_mirrored())
+            result.lit += weight * light.visible_share(sample, j) * emitter.share() /
+                          static_cast<double>(lamp_count());
         brdf_for(emitter, reflection, surface, brdf);
         // One loop instead of a spectrum per product: this runs for every sample and every emitter.
         for (std::size_t b = 0; b < bands; ++b) {

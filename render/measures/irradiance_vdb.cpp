@@ -95,7 +95,7 @@ void add_emitter(const AssembledScene& scene, std::size_t emitter_index, const D
                 const double r = std::max(radius, 0.5 * lattice.voxel);
                 light.columns(std::span<const Point3>(&x, 1), column);
                 const Spectrum t = attenuation.transmittance(radius, column);
-                const double relative = lamp.relative_intensity(v) / lamp.spread(r);
+                const double relative = lamp.relative_intensity(v) * lamp.focus(x) / lamp.spread(r);
                 for (std::size_t b = 0; b < bands; ++b)
                     result[b][lattice.index(i, j, k)] +=
                         static_cast<float>(lamp.axis_intensity()[b] * relative * t[b]);

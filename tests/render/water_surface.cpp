@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <string>
 
 #include "core/base/error.h"
 #include "core/light/submerged.h"
@@ -289,6 +290,32 @@ TEST(WaterSurfaceLight, IsInEquilibriumWhereNothingIsAbsorbed) {
     // All directions together, to a few per cent.
     EXPECT_LT(variance_of_all, std::pow(0.04 * 2 * k_water_index * k_water_index, 2));
     EXPECT_NEAR(all, 2 * k_water_index * k_water_index, 3 * std::sqrt(variance_of_all));
+}
+
+// A lamp that is seen lights a surface whole, whatever its image adds.
+TEST(WaterSurfaceLight, CountsAnImageForNoLampOfItsOwn) {
+    const PixelResult pixel = TestScene(lit_from({0.3, -0.4, 1})).pixel(12, 12);
+    EXPECT_EQ(pixel.lit, 1);
+}
+
+TEST(WaterSurfaceLight, RefusesWhatItsMirrorDoesNotShow) {
+    const auto message_for = [](SceneDesc desc) {
+        return message_of<InputError>([&] { RenderedFilm{desc}; });
+    };
+    SceneDesc desc = lit_from({0.3, 0.2, 2}, 20);
+    desc.render.integrator = RenderDesc::Integrator::planes;
+    EXPECT_NE(message_for(desc).find("render.integrator: planes with a water surface"),
+              std::string::npos);
+    desc = lit_from({0.3, 0.2, 2}, 20);
+    desc.water.snow = SnowDesc{};
+    desc.water.snow->number = 10;
+    desc.water.snow->least = 1e-3;
+    desc.water.snow->greatest = 2e-3;
+    desc.water.snow->reflectance = PerBand(3, 0.4);
+    EXPECT_NE(message_for(desc).find("water.snow with a water surface"), std::string::npos);
+    // Down there is no mirror.
+    desc.camera.world_from_camera = Affine::rotation_xyz_degrees({-60, 0, 0});
+    EXPECT_GT(RenderedFilm(desc).sum(Layer::total, 1), 0);
 }
 
 TEST(WaterSurfaceLight, RefusesWhatIsInTheAir) {
