@@ -36,6 +36,9 @@ struct AssembledScene {
     std::shared_ptr<const SnowModel> snow;               // null: there is none
     std::shared_ptr<const ConcentrationField> field;
     std::shared_ptr<const Surfaces> surfaces;
+    /// The same as far as it casts shadows: below calm water and a black sky, so that it is the
+    /// same object while waves move and the sky brightens.
+    std::shared_ptr<const Surfaces> shadow_casters;
     std::optional<Sky> sky;                     // above the water; none: it is black
     std::optional<WaterSurface> water_surface;  // which reflects; none: the water has no end
     /// With it, the field and its mirror image above (SubmergedField).

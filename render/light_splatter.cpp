@@ -25,7 +25,7 @@ constexpr double k_reach_depth = 15;
 
 void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share) {
     const bool same_shadows =
-        surfaces_ == scene.surfaces && options_.shadow_resolution == share.shadow_resolution;
+        surfaces_ == scene.shadow_casters && options_.shadow_resolution == share.shadow_resolution;
     const bool same_columns = field_.lock() == scene.field &&
                               options_.columns_per_voxel == share.columns_per_voxel &&
                               options_.column_budget == share.column_budget &&
@@ -36,7 +36,7 @@ void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowO
     };
     std::ranges::for_each(maps_, drop);
     std::ranges::for_each(sun_maps_, drop);
-    surfaces_ = scene.surfaces;
+    surfaces_ = scene.shadow_casters;
     field_ = scene.field;
     options_ = share;
 }
@@ -52,7 +52,8 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Lamp
         emitter.is_mirrored() ? *scene.field_with_image : *scene.field;
     if (!maps.shadows) {
         maps.shadows =
-            std::make_shared<ShadowMap>(*scene.surfaces, maps.lamp, maps.shadow_resolution, beam);
+            std::make_shared<ShadowMap>(*scene.shadow_casters, maps.lamp, maps.shadow_resolution,
+                                        beam);
         ++counts_.shadow_maps;
         counts_.rays += maps.shadows->rays_traced();
         counts_.bytes += maps.shadows->bytes();
@@ -138,7 +139,7 @@ std::shared_ptr<const DeepShadow> LightSplatter::splat_sun(const AssembledScene&
         }
     }
     if (!maps.shadows) {
-        maps.shadows = std::make_shared<SunShadowMap>(*scene.surfaces, sun, maps.squares,
+        maps.shadows = std::make_shared<SunShadowMap>(*scene.shadow_casters, sun, maps.squares,
                                                       maps.shadow_resolution);
         ++counts_.shadow_maps;
         counts_.rays += maps.shadows->rays_traced();

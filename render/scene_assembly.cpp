@@ -132,12 +132,16 @@ SkyRadiance radiance_of(const std::optional<Sky>& sky) {
 void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
     const std::optional<WaterSurfaceDesc>& surface = desc.water.surface;
     if (!surface || !surface->n) return;
-    scene.water_surface.emplace(*surface, scene.image.time().value_or(0));
+    scene.water_surface = cache.water_surface(*surface, scene.image.time().value_or(0));
     for (const LampDesc& lamp : desc.lamps)
         if (lamp.sky) scene.sky.emplace(*lamp.sky, surface->normal, desc.water.bands_nm);
-    const SubmergedParts& parts = cache.submerged(*scene.water_surface, *surface, scene.surfaces,
-                                                  scene.field, radiance_of(scene.sky));
-    scene.surfaces = parts.surfaces;
+    const SubmergedParts& parts = cache.submerged(*surface, scene.surfaces, scene.field);
+    scene.shadow_casters = parts.shadow_casters;
+    if (scene.sky || scene.water_surface->has_waves())
+        scene.surfaces = std::make_shared<SubmergedSurfaces>(scene.surfaces, *scene.water_surface,
+                                                             radiance_of(scene.sky));
+    else
+        scene.surfaces = parts.shadow_casters;
     scene.field = parts.field;
     scene.field_with_image = parts.field_with_image;
 }
@@ -165,7 +169,7 @@ SunFocus::Extent extent_of_focus(const SceneDesc& desc, const AssembledScene& sc
 }
 
 // Precondition: the scene has surfaces.
-void focus_suns(const SceneDesc& desc, AssembledScene& scene) {
+void focus_suns(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
     constexpr int k_resolution = 512, k_draft_resolution = 256;
     if (!scene.water_surface || !scene.water_surface->has_waves()) return;
     const bool is_draft = desc.render.quality == RenderDesc::Quality::draft;
@@ -173,9 +177,8 @@ void focus_suns(const SceneDesc& desc, AssembledScene& scene) {
     for (const LampDesc& lamp : desc.lamps)
         scene.sun_foci.push_back(
             lamp.sun && !lamp.sky
-                ? std::make_shared<const SunFocus>(*scene.water_surface, lamp.direction,
-                                                   glm::radians(lamp.sun->angle), extent,
-                                                   is_draft ? k_draft_resolution : k_resolution)
+                ? cache.sun_focus(lamp.direction, glm::radians(lamp.sun->angle), extent,
+                                  is_draft ? k_draft_resolution : k_resolution)
                 : nullptr);
 }
 
@@ -226,8 +229,8 @@ LightTransport transport_in(const Medium& medium, const PathWeight& path_weight,
 
 void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {
     if (desc.render.output == RenderDesc::Output::paper)
-        transport.integrator = std::make_unique<FocusWeightedIntegrator>(
-            std::move(transport.integrator), desc.camera.lens.value().focal_length);
+        transport.replace_integrator(std::make_unique<FocusWeightedIntegrator>(
+            std::move(transport.integrator), desc.camera.lens.value().focal_length));
 }
 
 }  // namespace
@@ -256,11 +259,11 @@ AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
     report_volumes(scene);
     begin_stage("geometry");
     const SurfaceSet& built = cache.surfaces(desc);
-    scene.surfaces = built.surfaces;
+    scene.surfaces = scene.shadow_casters = built.surfaces;
     scene.geometry_warnings = built.warnings;
     append(scene.warnings, scene.geometry_warnings);
     submerge(desc, cache, scene);
-    focus_suns(desc, scene);
+    focus_suns(desc, cache, scene);
     scene.glows = cache.glows(desc, scene.warnings);
     place_lamps(desc, scene);
     check_below_surface(desc, scene);
@@ -283,15 +286,20 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
     moved.field = scene.field;
     moved.glows = scene.glows;
     moved.surfaces = scene.surfaces;
+    moved.shadow_casters = scene.shadow_casters;
     moved.water_surface = scene.water_surface;
     moved.sky = scene.sky;
     moved.sun_foci = scene.sun_foci;
     moved.field_with_image = scene.field_with_image;
     if (desc.geometry != scene.desc().geometry) {
-        moved.surfaces = cache.surfaces_of_moment(desc).surfaces;
-        if (moved.water_surface)
-            moved.surfaces = std::make_shared<SubmergedSurfaces>(
-                moved.surfaces, *moved.water_surface, radiance_of(moved.sky));
+        const std::shared_ptr<const Surfaces> below = cache.surfaces_of_moment(desc).surfaces;
+        moved.surfaces = moved.shadow_casters = below;
+        if (moved.water_surface) {
+            moved.surfaces = std::make_shared<SubmergedSurfaces>(below, *moved.water_surface,
+                                                                 radiance_of(moved.sky));
+            moved.shadow_casters = std::make_shared<SubmergedSurfaces>(
+                below, WaterSurface(without_waves(*desc.water.surface)), SkyRadiance());
+        }
     }
     place_lamps(desc, moved);
     moved.warnings.clear();
@@ -306,9 +314,9 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
     };
     LightTransport transport = make(scene.water.medium);
     if (scene.snow)
-        transport.integrator =
+        transport.replace_integrator(
             std::make_unique<BeyondSnow>(make(scene.snow->water).integrator,
-                                         make(scene.snow->alone).integrator, scene.snow->parts());
+                                         make(scene.snow->alone).integrator, scene.snow->parts()));
     if (with_paths && integrator_kind(scene.desc().render.integrator).traces_paths)
         transport.paths = std::make_shared<PathTracer>(
             scene.lit(), std::vector<std::shared_ptr<const DeepShadow>>(), scene.scattering);

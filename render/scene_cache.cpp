@@ -210,17 +210,53 @@ SurfaceSet SceneCache::surfaces_of_moment(const SceneDesc& then) {
     return set;
 }
 
-const SubmergedParts& SceneCache::submerged(const WaterSurface& surface,
-                                            const WaterSurfaceDesc& desc,
-                                            std::shared_ptr<const Surfaces> surfaces,
-                                            std::shared_ptr<const ConcentrationField> field,
-                                            SkyRadiance sky) {
-    if (sky || surface.has_waves() || !submerged_ || submerged_->surface != desc ||
-        submerged_->surfaces != surfaces || submerged_->field != field) {
-        SubmergedParts parts{std::make_shared<SubmergedSurfaces>(surfaces, surface, std::move(sky)),
-                             std::make_shared<SubmergedField>(field, surface, false),
-                             std::make_shared<SubmergedField>(field, surface, true)};
-        submerged_ = KeptSubmerged{desc, std::move(surfaces), std::move(field), std::move(parts)};
+// An image of waves may have changed in the meantime; other waves change with time alone.
+bool SceneCache::KeptWaterSurface::is_of(const WaterSurfaceDesc& desc, double at) const {
+    if (calm != without_waves(desc) || waves.has_value() != (desc.waves != nullptr)) return false;
+    return !waves || (time == at && *waves == *desc.waves &&
+                      !std::holds_alternative<HeightImageDesc>(waves->shape));
+}
+
+const WaterSurface& SceneCache::water_surface(const WaterSurfaceDesc& desc, double time) {
+    if (!water_surface_ || !water_surface_->is_of(desc, time)) {
+        water_surface_.reset();
+        water_surface_.emplace(
+            KeptWaterSurface{without_waves(desc),
+                             desc.waves ? std::optional(*desc.waves) : std::nullopt, time,
+                             WaterSurface(desc, time)});
+    }
+    return water_surface_->surface;
+}
+
+std::shared_ptr<const SunFocus> SceneCache::sun_focus(const Vector3& direction, double angle,
+                                                      const SunFocus::Extent& extent,
+                                                      int resolution) {
+    constexpr std::size_t k_most = 4;  // maps of 50 MB
+    std::vector<KeptFocus>& foci = water_surface_.value().foci;
+    const auto known = std::ranges::find_if(foci, [&](const KeptFocus& kept) {
+        return kept.direction == direction && kept.angle == angle && kept.extent == extent &&
+               kept.resolution == resolution;
+    });
+    if (known != foci.end()) return known->focus;
+    if (foci.size() == k_most) foci.erase(foci.begin());
+    foci.push_back({direction, angle, extent, resolution,
+                    std::make_shared<const SunFocus>(water_surface_->surface, direction, angle,
+                                                     extent, resolution)});
+    return foci.back().focus;
+}
+
+const SubmergedParts& SceneCache::submerged(
+    const WaterSurfaceDesc& desc, const std::shared_ptr<const Surfaces>& surfaces,
+    const std::shared_ptr<const ConcentrationField>& field) {
+    const WaterSurfaceDesc calm = without_waves(desc);
+    if (!submerged_ || submerged_->surface != calm || submerged_->surfaces != surfaces ||
+        submerged_->field != field) {
+        const WaterSurface surface(calm);
+        submerged_ = KeptSubmerged{
+            calm, surfaces, field,
+            {std::make_shared<SubmergedSurfaces>(surfaces, surface, SkyRadiance()),
+             std::make_shared<SubmergedField>(field, surface, false),
+             std::make_shared<SubmergedField>(field, surface, true)}};
     }
     return submerged_->parts;
 }

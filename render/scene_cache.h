@@ -9,8 +9,10 @@
 #include "core/geometry/geometry_scene.h"
 #include "core/light/glow.h"
 #include "core/light/submerged.h"
+#include "core/light/sun_focus.h"
 #include "core/paths/scattering_tables.h"
 #include "core/scene/scene_desc.h"
+#include "core/scene/waves_desc.h"
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
 #include "render/light_splatter.h"
@@ -29,10 +31,10 @@ struct SurfaceSet {
     std::vector<std::string> warnings;  // one line each
 };
 
-/// The surfaces and concentrations below a water surface, and their mirror image above
+/// The surfaces and concentrations below a calm water surface, and their mirror image above
 /// (core/light/submerged.h).
 struct SubmergedParts {
-    std::shared_ptr<const Surfaces> surfaces;
+    std::shared_ptr<const Surfaces> shadow_casters;  // below a black sky
     std::shared_ptr<const ConcentrationField> field, field_with_image;
 };
 
@@ -67,13 +69,15 @@ class SceneCache {
     /// are.
     SurfaceSet surfaces_of_moment(const SceneDesc& then);
 
-    /// What is below a water surface that reflects, as light meets it there. Calm and without
-    /// a sky they are the same objects if they are asked for again with the same arguments. `desc`:
-    /// what the surface was made of.
-    const SubmergedParts& submerged(const WaterSurface& surface, const WaterSurfaceDesc& desc,
-                                    std::shared_ptr<const Surfaces> surfaces,
-                                    std::shared_ptr<const ConcentrationField> field,
-                                    SkyRadiance sky);
+    /// A water surface that reflects, at a moment [s].
+    const WaterSurface& water_surface(const WaterSurfaceDesc& desc, double time);
+    /// How the waves of the surface asked for last focus a sun: the arguments of SunFocus.
+    std::shared_ptr<const SunFocus> sun_focus(const Vector3& direction, double angle,
+                                              const SunFocus::Extent& extent, int resolution);
+    /// What is below that surface, calm: the same objects if it is asked for again.
+    const SubmergedParts& submerged(const WaterSurfaceDesc& desc,
+                                    const std::shared_ptr<const Surfaces>& surfaces,
+                                    const std::shared_ptr<const ConcentrationField>& field);
 
     /// The light of a scene's lamps (LightSplatter::splat).
     DeepShadows light(
@@ -128,6 +132,22 @@ class SceneCache {
         std::shared_ptr<const TriangleMesh> mesh;
     };
 
+    struct KeptFocus {
+        Vector3 direction;
+        double angle;
+        SunFocus::Extent extent;
+        int resolution;
+        std::shared_ptr<const SunFocus> focus;
+    };
+    struct KeptWaterSurface {
+        WaterSurfaceDesc calm;
+        std::optional<WavesDesc> waves;
+        double time;
+        WaterSurface surface;
+        std::vector<KeptFocus> foci{};  // of as many suns as one scene has
+
+        bool is_of(const WaterSurfaceDesc& desc, double at) const;
+    };
     struct KeptSubmerged {
         WaterSurfaceDesc surface;
         std::shared_ptr<const Surfaces> surfaces;
@@ -147,6 +167,7 @@ class SceneCache {
     MeshStore meshes_;
     std::vector<KeptLevelSet> level_sets_;  // of the scene built last
     std::optional<KeptSurfaces> surfaces_, ahead_;
+    std::optional<KeptWaterSurface> water_surface_;
     std::optional<KeptSubmerged> submerged_;
     LightSplatter splatter_;
 };

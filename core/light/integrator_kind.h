@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "core/base/vector_math.h"
@@ -18,11 +19,21 @@ class PathTracer;
 struct LightTransport {
     std::unique_ptr<const Integrator> integrator;
     std::unique_ptr<const SurfaceLighting> surfaces;
+    /// What `integrator` integrates, in parts of which each is interpolated between pixels by
+    /// itself: suns that waves focus differ from pixel to pixel, all other light does not. Empty:
+    /// as a whole.
+    std::vector<std::unique_ptr<const Integrator>> parts{};
     /// Random paths: of all light (IntegratorKind::traces_paths), or of what the other two leave
     /// out (AllLightPass). Null unless a pass needs them.
     std::shared_ptr<const PathTracer> paths{};
     /// By what all of this light is weighted, for lamps in view too.
     PathWeight path_weight{};
+
+    /// Replaces the integrator, and its parts with it.
+    void replace_integrator(std::unique_ptr<const Integrator> by) {
+        integrator = std::move(by);
+        parts.clear();
+    }
 };
 
 /// The inputs from which integrators are constructed.

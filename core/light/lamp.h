@@ -111,6 +111,7 @@ class Lamp {
     double share() const { return share_; }
     /// The same sun, focused by waves.
     Lamp focused(std::shared_ptr<const SunFocus> focus) const;
+    bool is_focused() const { return focus_ != nullptr; }
     /// By what its light at `x` is multiplied where waves focus it (SunFocus); else 1.
     double focus(const Point3& x) const;
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "core/base/error.h"
@@ -17,26 +18,41 @@ namespace {
 constexpr int k_slices = 48;
 constexpr int k_beams_of_texel = 3;  // along each side
 
-/// Where a beam enters the water, at depth 0, and what becomes of it.
+/// Where a beam enters the water, at depth 0, and what becomes of it. Single precision is 1e-7 of a
+/// shift by some metres, and half of the memory that each depth's sum reads.
 struct Beam {
-    double u = 0, v = 0;              // of its place at depth 0, less the grid's
-    double slope_u = 0, slope_v = 0;  // per metre of depth, less those of calm water
-    double flux = 0;                  // relative to what calm water lets through
+    float u = 0, v = 0;              // of its place at depth 0, less the grid's [texels]
+    float slope_u = 0, slope_v = 0;  // per metre of depth, less those of calm water [texels/m]
+    float flux = 0;                  // relative to what calm water lets through
 };
+
+/// A column or line of a map that repeats after `count` of them.
+int wrapped(int i, int count) {
+    if (i >= 0 && i < count) return i;  // nearly all: a division would take longer than the rest
+    return (i % count + count) % count;
+}
 
 /// How the flux at a place is shared out among the three texels around: a quadratic B-spline. Even
 /// beams light texels evenly, and as they move apart or together, evenly more or less; with kinks,
 /// as a linear share has them, some texels would see a sixth more of any change.
 struct SplineWeights {
-    /// `x`: in texels from the centre of the first.
-    explicit SplineWeights(double x) {
-        const double nearest = std::floor(x + 0.5), d = x - nearest;
-        first = static_cast<int>(nearest) - 1;
-        weights = {0.5 * (0.5 - d) * (0.5 - d), 0.75 - d * d, 0.5 * (0.5 + d) * (0.5 + d)};
+    /// `x`: in texels from the centre of the first, of `count`. Those beyond have no weight unless
+    /// the map repeats.
+    SplineWeights(double x, int count, bool is_periodic) {
+        const double nearest = std::floor(x + 0.5);
+        const auto d = static_cast<float>(x - nearest);
+        const int first = static_cast<int>(nearest) - 1;
+        weights = {0.5F * (0.5F - d) * (0.5F - d), 0.75F - d * d, 0.5F * (0.5F + d) * (0.5F + d)};
+        texels = {first, first + 1, first + 2};
+        if (first >= 0 && first + 2 < count) return;
+        for (std::size_t i = 0; i < texels.size(); ++i) {
+            if (!is_periodic && (texels[i] < 0 || texels[i] >= count)) weights[i] = 0;
+            texels[i] = wrapped(texels[i], count);
+        }
     }
 
-    int first;
-    std::array<double, 3> weights;
+    std::array<int, 3> texels{};
+    std::array<float, 3> weights{};
 };
 
 }  // namespace
@@ -51,7 +67,7 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
     shift_v_ = -calm.y / calm.z;
     const double calm_flux = -in_air.z * (1 - surface.reflectance_from_air(-in_air.z));
     const int beams_across = resolution * k_beams_of_texel;
-    const double step = extent.side / beams_across;
+    const double step = extent.side / beams_across, texels = resolution / extent.side;
     const auto place = [&](double centre, int i) {
         return centre + (i + 0.5) * step - 0.5 * extent.side;
     };
@@ -70,12 +86,13 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
             Beam& beam = beams(i, static_cast<int>(row));
             const double slope_u = -down->x / down->z, slope_v = -down->y / down->z;
             // The light enters at the wave's height, from where it goes down to depth 0.
-            beam.u = wave.height * slope_u;
-            beam.v = wave.height * slope_v;
-            beam.slope_u = slope_u - shift_u_;
-            beam.slope_v = slope_v - shift_v_;
-            beam.flux = towards / normal.z * (1 - surface.reflectance_from_air(towards)) /
-                        (calm_flux * k_beams_of_texel * k_beams_of_texel);
+            beam.u = static_cast<float>(texels * wave.height * slope_u);
+            beam.v = static_cast<float>(texels * wave.height * slope_v);
+            beam.slope_u = static_cast<float>(texels * (slope_u - shift_u_));
+            beam.slope_v = static_cast<float>(texels * (slope_v - shift_v_));
+            beam.flux = static_cast<float>(
+                towards / normal.z * (1 - surface.reflectance_from_air(towards)) /
+                (calm_flux * k_beams_of_texel * k_beams_of_texel));
         }
     });
     slices_.resize(k_slices + 1);
@@ -85,29 +102,22 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
         Grid2D<float>& slice = slices_[k];
         slice.assign(resolution_, resolution_);
         const double depth = depth_of(k);
-        const double texels = resolution_ / extent.side;
+        const auto place_in = [&](int i, float shift, float slope) {
+            return SplineWeights((i + 0.5) / k_beams_of_texel - 0.5 + shift + depth * slope,
+                                 resolution_, extent_.is_periodic);
+        };
         for (int j = 0; j < beams_across; ++j) {
             for (int i = 0; i < beams_across; ++i) {
                 const Beam& beam = beams(i, j);
-                const double x =
-                    (i + 0.5) / k_beams_of_texel - 0.5 + texels * (beam.u + depth * beam.slope_u);
-                const double y =
-                    (j + 0.5) / k_beams_of_texel - 0.5 + texels * (beam.v + depth * beam.slope_v);
-                const SplineWeights across(x), down(y);
-                for (int l = 0; l < 3; ++l)
-                    for (int c = 0; c < 3; ++c) {
-                        int column = across.first + c, line = down.first + l;
-                        if (extent.is_periodic) {
-                            column = (column % resolution_ + resolution_) % resolution_;
-                            line = (line % resolution_ + resolution_) % resolution_;
-                        } else if (column < 0 || line < 0 || column >= resolution_ ||
-                                   line >= resolution_) {
-                            continue;
-                        }
-                        slice(column, line) += static_cast<float>(
-                            beam.flux * across.weights[static_cast<std::size_t>(c)] *
-                            down.weights[static_cast<std::size_t>(l)]);
-                    }
+                const SplineWeights across = place_in(i, beam.u, beam.slope_u);
+                const SplineWeights down = place_in(j, beam.v, beam.slope_v);
+                for (std::size_t l = 0; l < 3; ++l) {
+                    const std::span<float> line = slice.row(down.texels[l]);
+                    const float flux = beam.flux * down.weights[l];
+                    for (std::size_t c = 0; c < 3; ++c)
+                        line[static_cast<std::size_t>(across.texels[c])] +=
+                            flux * across.weights[c];
+                }
             }
         }
         blur(slice, depth * radius * texels);
@@ -150,41 +160,37 @@ double SunFocus::slide(const Vector3& direction) const {
     return std::hypot(v.x + v.z * shift_u_, v.y + v.z * shift_v_);
 }
 
-double SunFocus::value(const Grid2D<float>& slice, double u, double v) const {
-    const double x = u - 0.5, y = v - 0.5;
-    const double x0 = std::floor(x), y0 = std::floor(y);
-    const auto at = [&](double column, double line) {
-        int c = static_cast<int>(column), l = static_cast<int>(line);
-        c = extent_.is_periodic ? (c % resolution_ + resolution_) % resolution_
-                                : std::clamp(c, 0, resolution_ - 1);
-        l = extent_.is_periodic ? (l % resolution_ + resolution_) % resolution_
-                                : std::clamp(l, 0, resolution_ - 1);
-        return static_cast<double>(slice(c, l));
-    };
-    const double s = x - x0, t = y - y0;
-    return (1 - t) * ((1 - s) * at(x0, y0) + s * at(x0 + 1, y0)) +
-           t * ((1 - s) * at(x0, y0 + 1) + s * at(x0 + 1, y0 + 1));
-}
-
+// Linear between the texels around, and between the depths above and below.
 double SunFocus::at(const Point3& x) const {
     const Vector3 place = surface_.coordinates(x);
     const double depth = -place.z;
     if (!(depth > 0)) return 1;
     const double texels = resolution_ / extent_.side;
-    double u = (place.x - depth * shift_u_ - extent_.u + 0.5 * extent_.side) * texels;
-    double v = (place.y - depth * shift_v_ - extent_.v + 0.5 * extent_.side) * texels;
-    if (extent_.is_periodic) {
-        u -= std::floor(u / resolution_) * resolution_;
-        v -= std::floor(v / resolution_) * resolution_;
-    } else if (!(u > 0 && v > 0 && u < resolution_ && v < resolution_)) {
-        return 1;
-    }
+    const double u = (place.x - depth * shift_u_ - extent_.u + 0.5 * extent_.side) * texels;
+    const double v = (place.y - depth * shift_v_ - extent_.v + 0.5 * extent_.side) * texels;
+    if (!extent_.is_periodic && !(u > 0 && v > 0 && u < resolution_ && v < resolution_)) return 1;
+    const double column = std::floor(u - 0.5), line = std::floor(v - 0.5);
+    const double s = u - 0.5 - column, t = v - 0.5 - line;
+    const auto neighbours = [&](double first) {
+        const int i = static_cast<int>(first);
+        return extent_.is_periodic
+                   ? std::array{wrapped(i, resolution_), wrapped(i + 1, resolution_)}
+                   : std::array{std::max(i, 0), std::min(i + 1, resolution_ - 1)};
+    };
+    const std::array<int, 2> columns = neighbours(column), lines = neighbours(line);
     const double level = k_slices * std::sqrt(std::min(1.0, depth / extent_.depth));
     const auto k =
         std::min(static_cast<std::size_t>(level), static_cast<std::size_t>(k_slices - 1));
     const double from = depth_of(k), to = depth_of(k + 1);
     const double share = std::clamp((depth - from) / (to - from), 0.0, 1.0);
-    return std::lerp(value(slices_[k], u, v), value(slices_[k + 1], u, v), share);
+    const auto value = [&](const Grid2D<float>& slice) {
+        const auto along = [&](int row) {
+            return (1 - s) * static_cast<double>(slice(columns[0], row)) +
+                   s * static_cast<double>(slice(columns[1], row));
+        };
+        return (1 - t) * along(lines[0]) + t * along(lines[1]);
+    };
+    return (1 - share) * value(slices_[k]) + share * value(slices_[k + 1]);
 }
 
 }  // namespace uw

@@ -25,6 +25,8 @@ class SunFocus {
         bool is_periodic = false;  ///< the square repeats; else there is no focusing outside
         double u = 0, v = 0;       ///< its centre, in the surface's coordinates
         double depth = 0;          ///< down to here [m], > 0; the same below
+
+        friend bool operator==(const Extent&, const Extent&) = default;
     };
 
     /// `direction` of the sun's light in the air, unit; `angle` across its disc in the air [rad].
@@ -41,7 +43,6 @@ class SunFocus {
 
   private:
     double depth_of(std::size_t slice) const;
-    double value(const Grid2D<float>& slice, double u, double v) const;
     void blur(Grid2D<float>& slice, double radius) const;
 
     WaterSurface surface_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
@@ -203,11 +204,18 @@ LightTransport make_volume(const IntegratorInputs& inputs) {
     const LitScene& scene = inputs.scene;
     const auto make = [&](double depth_tolerance, const VolumeIntegrator::Fineness& fineness,
                           double column_tolerance) {
-        return LightTransport{
-            std::make_unique<VolumeIntegrator>(scene, inputs.deep_shadows,
-                                               DepthTolerance(*scene.medium, depth_tolerance),
-                                               fineness),
+        const auto integrator = [&](const VolumeIntegrator::Part& part) {
+            return std::make_unique<VolumeIntegrator>(
+                scene, inputs.deep_shadows, DepthTolerance(*scene.medium, depth_tolerance),
+                fineness, part);
+        };
+        LightTransport transport{
+            integrator({}),
             std::make_unique<DirectLighting>(scene, inputs.deep_shadows, column_tolerance)};
+        if (std::ranges::any_of(*scene.emitters, &Lamp::is_focused))
+            for (const bool focused : {true, false})
+                transport.parts.push_back(integrator({.focused = focused, .even = !focused}));
+        return transport;
     };
     switch (inputs.quality) {
         case Quality::draft:
@@ -239,7 +247,8 @@ struct VolumeIntegrator::Workspace {
 
 VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
                                    std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
-                                   const DepthTolerance& tolerance, const Fineness& fineness)
+                                   const DepthTolerance& tolerance, const Fineness& fineness,
+                                   const Part& part)
     : scene_(scene),
       evenness_(scene),
       tolerance_(tolerance),
@@ -250,6 +259,8 @@ VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
       sum_(*scene.medium) {
     const AttenuationTable& c = sum_.attenuation();
     const auto bands = static_cast<std::size_t>(c.band_count);
+    for (std::size_t j = 0; j < scene.emitters->size(); ++j)
+        if ((*scene.emitters)[j].is_focused() ? part.focused : part.even) emitters_.push_back(j);
     largest_attenuation_ = c.uniform.greatest(bands);
     smallest_attenuation_ = c.uniform.least(bands);
     for (const Spectrum& constituent : c.constituents)
@@ -267,7 +278,8 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
     const std::vector<Lamp>& emitters = *scene_.emitters;
     result.reset(distances.size(), scene_.lamp_count());
     scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);
-    for (std::size_t j = 0; j < emitters.size(); ++j) {
+    std::optional<std::size_t> lamp;  // of which evenness is known
+    for (const std::size_t j : emitters_) {
         throw_if_stopped();
         const LampPassage passage(ray, emitters[j]);
         double reach = distances.back();
@@ -290,8 +302,10 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
         w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
         w.radiance.assign(distances.size(), Spectrum{});
         sum_.add(w.nodes, emitters[j].axis_intensity(), w.radiance);
-        if (j == 0 || emitters[j].index() != emitters[j - 1].index())
-            evenness_.find(emitters[j].index(), ray, begin, distances, w.evenness);
+        if (lamp != emitters[j].index()) {
+            lamp = emitters[j].index();
+            evenness_.find(*lamp, ray, begin, distances, w.evenness);
+        }
         Spectrum so_far;
         for (std::size_t i = 0; i < distances.size(); ++i) {
             so_far += w.evenness[i] * w.radiance[i];

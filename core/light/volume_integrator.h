@@ -87,10 +87,15 @@ class VolumeIntegrator final : public Integrator {
         double interpolated_half_tangent = 0.27;
     };
 
+    /// Whose light is integrated: whether that of suns that waves focus, and whether all other.
+    struct Part {
+        bool focused = true, even = true;
+    };
+
     /// `deep_shadows`: one per emitter of `scene`. `tolerance`: of the concentrations along a ray.
     VolumeIntegrator(const LitScene& scene,
                      std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
-                     const DepthTolerance& tolerance, const Fineness& fineness);
+                     const DepthTolerance& tolerance, const Fineness& fineness, const Part& part);
 
     void in_scatter(const Ray& ray, std::span<const double> distances,
                     InScatter& result) const override;
@@ -115,6 +120,7 @@ class VolumeIntegrator final : public Integrator {
     DepthTolerance tolerance_;
     Fineness fineness_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;
+    std::vector<std::size_t> emitters_;     // those of the part, ascending
     std::vector<double> phase_cotangents_;  // of all phase functions' breakpoints
     PhaseTable phases_;
     ScatterSum sum_;

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <vector>
 
 #include "core/base/error.h"
@@ -39,25 +38,26 @@ class TileRenderer {
     const PixelResult& render(int x, int y);
 
   private:
+    void find_in_scatter(std::size_t pixel);
+
     const PixelRenderer& renderer_;
     std::span<const PixelStep> steps_;
-    std::optional<InScatterLattice> lattice_;  // empty: every pixel by itself
+    std::vector<InScatterLattice> lattices_;  // one per part; none: every pixel by itself
     PixelWindow tile_;
     Grid2D<PixelView> views_;                 // of the tile
     SurfaceLight light_;                      // on all their samples
     std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
-    std::vector<double> in_scatter_;          // of the current pixel, if there is no lattice
+    std::vector<double> in_scatter_;          // of the current pixel
     PixelResult result_;
 };
 
 TileRenderer::TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
                            std::span<const PixelStep> steps)
     : renderer_(renderer), steps_(steps) {
+    in_scatter_.resize(renderer.in_scatter().value_count());
     if (in_scatter_tolerance > 0)
-        lattice_.emplace(renderer.rays(), renderer.scene(), renderer.in_scatter(),
-                         in_scatter_tolerance);
-    else
-        in_scatter_.resize(renderer.in_scatter().value_count());
+        for (const RayInScatter& part : renderer.in_scatter_parts())
+            lattices_.emplace_back(renderer.rays(), renderer.scene(), part, in_scatter_tolerance);
 }
 
 void TileRenderer::begin(const PixelWindow& tile) {
@@ -70,16 +70,26 @@ void TileRenderer::begin(const PixelWindow& tile) {
         first_samples_.push_back(samples);
         samples += view.samples.size();
     }
-    if (lattice_) lattice_->evaluate(tile, views_);
+    for (InScatterLattice& lattice : lattices_) lattice.evaluate(tile, views_);
+}
+
+void TileRenderer::find_in_scatter(std::size_t pixel) {
+    if (lattices_.empty()) renderer_.in_scatter().integrate(views_[pixel], in_scatter_);
+    for (std::size_t i = 0; i < lattices_.size(); ++i) {
+        const std::span<const double> part = lattices_[i].values(pixel);
+        if (i == 0)
+            std::ranges::copy(part, in_scatter_.begin());
+        else
+            add(in_scatter_, part);
+    }
 }
 
 const PixelResult& TileRenderer::render(int x, int y) {
     const std::size_t pixel = views_.index(x - tile_.x0, y - tile_.y0);
     const PixelView& view = views_[pixel];
     const std::size_t first_sample = first_samples_[pixel];
-    if (!lattice_) renderer_.in_scatter().integrate(view, in_scatter_);
-    renderer_.shade(view, light_, first_sample, lattice_ ? lattice_->values(pixel) : in_scatter_,
-                    result_);
+    find_in_scatter(pixel);
+    renderer_.shade(view, light_, first_sample, in_scatter_, result_);
     for (const PixelStep& step : steps_) step({x, y, view, light_, first_sample, result_});
     renderer_.weigh(x, y, result_);
     return result_;

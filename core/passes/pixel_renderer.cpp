@@ -146,7 +146,11 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
       matchers_(matchers),
       object_mattes_(matte_ids(scene.surfaces->names().objects)),
       material_mattes_(matte_ids(scene.surfaces->names().materials)),
-      camera_from_world_(rays.world_from_camera().inverse()) {}
+      camera_from_world_(rays.world_from_camera().inverse()) {
+    for (const auto& part : transport.parts)
+        parts_.emplace_back(*part, rays.world_from_camera(), slabs, lamp_count(), band_count(),
+                            parts);
+}
 
 void PixelRenderer::trace(int x, int y, PixelView& view) const {
     begin_view(x, y, view);

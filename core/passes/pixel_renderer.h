@@ -100,6 +100,10 @@ class PixelRenderer {
     int first_sample() const { return samples_.first; }
     const RaySource& rays() const { return rays_; }
     const RayInScatter& in_scatter() const { return in_scatter_; }
+    /// The same in parts that add up to it, each to be interpolated between pixels by itself.
+    std::span<const RayInScatter> in_scatter_parts() const {
+        return parts_.empty() ? std::span(&in_scatter_, 1) : std::span(parts_);
+    }
     const LightTransport& transport() const { return transport_; }
     const LitScene& scene() const { return scene_; }
     const PointMatchers& matchers() const { return matchers_; }
@@ -147,6 +151,7 @@ class PixelRenderer {
     PixelSamples samples_;
     SensorModel sensor_;
     RayInScatter in_scatter_;
+    std::vector<RayInScatter> parts_;  // of LightTransport::parts
     LampsInView lamps_in_view_;
     PointMatchers matchers_;
     PixelWeight weight_;                                  // null: 1

@@ -58,7 +58,7 @@ class OneEmitter {
             nothing_, sphere_, emitters_.front().position(), DeepShadowOptions{64, 2, 1 << 20});
         return std::make_unique<VolumeIntegrator>(
             lit(), std::vector<std::shared_ptr<const DeepShadow>>{shadows},
-            DepthTolerance(medium_, 0), VolumeIntegrator::Fineness{});
+            DepthTolerance(medium_, 0), VolumeIntegrator::Fineness{}, VolumeIntegrator::Part{});
     }
 
   private:
@@ -243,7 +243,7 @@ TEST(VolumeIntegrator, CutsPanelsToTheOpticalDepthOfAllConstituents) {
     add_particles(medium, {6, 5}, {2, 3});
     const LitScene lit{&medium, &field, &k_aside, &emitters};
     const VolumeIntegrator volume(lit, {std::make_shared<ClearShadow>(field, position)},
-                                  DepthTolerance(medium, 0), {.knots_per_panel = 1});
+                                  DepthTolerance(medium, 0), {.knots_per_panel = 1}, {});
     const OneEmitter as_thick(emitters[0], hg_medium(k_g, {6.2, 5.05}, {2.3, 3.2}), k_aside);
     const Ray ray{{0, 0, 0}, {0, 0, 1}};
     InScatter light;
