@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/light/submerged.h"
 #include "core/scene/sky_desc.h"
+#include "core/scene/waves_desc.h"
 #include "tests/support/adaptive_quadrature.h"
 #include "tests/support/film_rendering.h"
 #include "tests/support/fresnel_by_angles.h"
@@ -290,6 +291,37 @@ TEST(WaterSurfaceLight, IsInEquilibriumWhereNothingIsAbsorbed) {
     // All directions together, to a few per cent.
     EXPECT_LT(variance_of_all, std::pow(0.04 * 2 * k_water_index * k_water_index, 2));
     EXPECT_NEAR(all, 2 * k_water_index * k_water_index, 3 * std::sqrt(variance_of_all));
+}
+
+// Light from the air enters a trough below the level of calm water, and nothing shades what is
+// below it: with the maps of what lamps see as without them.
+TEST(WaterSurfaceLight, TroughsCastNoShadows) {
+    SceneDesc desc = under_uniform_sky(2);
+    desc.camera.world_from_camera = Affine::rotation_xyz_degrees({-5, 0, 0});
+    desc.geometry = {plane_at_z(k_far_wall), box({-1, 0.5, 1.5}, {-0.5, 1, 2})};
+    WavesDesc waves;
+    waves.shape = std::vector<SineWaveDesc>{{.amplitude = 0.05, .wavelength = 2, .direction = 20}};
+    desc.water.surface->waves = std::make_shared<const WavesDesc>(waves);
+    SkyDesc sky = *desc.lamps[0].sky;
+    sky.samples = 16;
+    desc.lamps[0].sky = std::make_shared<const SkyDesc>(sky);
+    LampDesc sun;
+    sun.name = "sun";
+    sun.direction = {0.6, 0.8, 0};
+    sun.sun = SunDesc{.surface = *desc.water.surface};
+    sun.intensity = PerBand{1, 2, 3};
+    sun.fixed_to_camera = false;
+    desc.lamps.push_back(sun);
+    SceneDesc exact = desc;
+    exact.render.integrator = RenderDesc::Integrator::reference;
+    const TestScene by_maps(desc), by_rays(exact);
+    for (const auto& [x, y] : {std::pair{12, 12}, {3, 15}, {20, 9}}) {
+        const PixelResult found = by_maps.pixel(x, y), truth = by_rays.pixel(x, y);
+        // Small steps are a rule of low order.
+        for (std::size_t b = 0; b < 3; ++b)
+            EXPECT_NEAR(found.backscatter[b], truth.backscatter[b], 5e-3 * truth.backscatter[b])
+                << x << " " << y;
+    }
 }
 
 // A lamp that is seen lights a surface whole, whatever its image adds.

@@ -1,5 +1,6 @@
 // ctest labels: unit analytic
-// Waves that focus a sun: the closed form of long, low waves, and what of the light is conserved.
+// Waves that focus a sun: the closed form of long, low waves, what of the light is conserved, and
+// how it moves.
 #include "core/light/sun_focus.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "core/geometry/waves.h"
 #include "core/scene/waves_desc.h"
 
 namespace uw::test {
@@ -19,10 +21,10 @@ using std::numbers::pi;
 
 constexpr double k_n = 1.34;
 
-WaterSurface surface_of(const WavesDesc& waves) {
+WaterSurface surface_of(const WavesDesc& waves, double time = 0) {
     WaterSurfaceDesc desc{{0, 5, 0}, {0, 1, 0}, k_n};
     desc.waves = std::make_shared<const WavesDesc>(waves);
-    return WaterSurface(desc);
+    return WaterSurface(desc, time);
 }
 
 WavesDesc one_wave(double amplitude, double wavelength) {
@@ -54,19 +56,106 @@ TEST(SunFocus, OfALowWaveIsTheClosedForm) {
     EXPECT_GT(largest, 0.01);
 }
 
-// However waves focus it, light is neither lost nor gained on its way down.
-TEST(SunFocus, KeepsTheLightThatEnters) {
+WavesDesc breeze(double wind) {
     WavesDesc waves;
     WaveSpectrumDesc sea;
     sea.model = WaveSpectrumDesc::Model::jonswap;
-    sea.wind = 6;
+    sea.wind = wind;
     sea.fetch = 1000;
     sea.tile = 10;
     sea.resolution = 128;
     sea.seed = 3;
     waves.shape = sea;
+    return waves;
+}
+
+/// The map under these waves at a moment [s], read at places that lie between its texels.
+class MapOfMoment {
+  public:
+    MapOfMoment(const WavesDesc& waves, double time)
+        : focus_(surface_of(waves, time), glm::normalize(Vector3(0.3, -1, 0.2)), 0.01,
+                 {.side = k_side, .is_periodic = true, .depth = 3}, k_texels) {}
+
+    double at(double u, double v) const { return focus_.at({u, 5 - k_depth, v}); }
+
+    static constexpr double k_side = 10, k_depth = 2;
+    static constexpr int k_texels = 160;
+
+  private:
+    SunFocus focus_;
+};
+
+/// The root of the mean square of f(u, v) over a tile.
+template <class Function>
+double spread_of(const Function& f) {
+    constexpr int k_places = 150;
+    double squares = 0;
+    for (int j = 0; j < k_places; ++j)
+        for (int i = 0; i < k_places; ++i) {
+            const double value = f((i + 0.3) * MapOfMoment::k_side / k_places,
+                                   (j + 0.7) * MapOfMoment::k_side / k_places);
+            squares += value * value;
+        }
+    return std::sqrt(squares) / k_places;
+}
+
+// A wave that travels takes its caustics with it, whatever part of a texel it has come: beams lie
+// elsewhere on it then, but make the same light of it.
+TEST(SunFocus, TravelsWithItsWave) {
+    const double length = 2.5, k = 2 * pi / length;
+    const WavesDesc waves = one_wave(0.1, length);
+    const double speed = wave_frequency(k, {}) / k;
+    const MapOfMoment before(waves, 0);
+    const double contrast = spread_of([&](double u, double v) { return before.at(u, v) - 1; });
+    EXPECT_GT(contrast, 0.2);
+    const double texel = MapOfMoment::k_side / MapOfMoment::k_texels;
+    for (const double texels : {0.25, 0.5, 9.37}) {
+        const double way = texels * texel;
+        const MapOfMoment after(waves, way / speed);
+        const double change = spread_of(
+            [&](double u, double v) { return after.at(u + way, v) - before.at(u, v); });
+        // What linear interpolation between texels leaves out: h''/8 of the texel's square.
+        EXPECT_LT(change, 0.01 * contrast) << texels;
+        EXPECT_GT(spread_of([&](double u, double v) { return after.at(u, v) - before.at(u, v); }),
+                  3 * change);
+    }
+}
+
+// From one moment to the next the map of a sea changes in proportion to the time between them, and
+// by its square from a straight line: what flickers would change as much in any time.
+TEST(SunFocus, DoesNotFlicker) {
+    const WavesDesc waves = breeze(4);
+    const MapOfMoment at_first(waves, 7);
+    const auto moment = [&](double later) { return MapOfMoment(waves, 7 + later); };
+    const auto change = [&](const MapOfMoment& to) {
+        return spread_of([&](double u, double v) { return to.at(u, v) - at_first.at(u, v); });
+    };
+    const auto bend = [&](const MapOfMoment& earlier, const MapOfMoment& later) {
+        return spread_of([&](double u, double v) {
+            return earlier.at(u, v) + later.at(u, v) - 2 * at_first.at(u, v);
+        });
+    };
+    constexpr double k_frame = 0.04;
+    const double of_frame = change(moment(k_frame));
+    double before = 0, bend_before = 0;
+    for (const double step : {k_frame / 8, k_frame / 16, k_frame / 32}) {
+        const MapOfMoment earlier = moment(-step), later = moment(step);
+        const double by_now = change(later), bend_now = bend(earlier, later);
+        if (before > 0) {
+            EXPECT_NEAR(before / by_now, 2, 0.05) << step;
+            EXPECT_GT(bend_before / bend_now, 3) << step;
+        }
+        before = by_now;
+        bend_before = bend_now;
+    }
+    EXPECT_LT(before, of_frame / 8);
+    EXPECT_GT(of_frame, 0.05);
+}
+
+// However waves focus it, light is neither lost nor gained on its way down.
+TEST(SunFocus, KeepsTheLightThatEnters) {
     constexpr int k_resolution = 128;
-    const SunFocus focus(surface_of(waves), glm::normalize(Vector3(0.5, -1, 0.2)), 0.01,
+    const SunFocus focus(surface_of(breeze(6)), glm::normalize(Vector3(0.5, -1, 0.2)), 0.01,
                          {.side = 10, .is_periodic = true, .depth = 6}, k_resolution);
     double at_surface = 0;
     for (const double depth : {0.0, 0.5, 2.0, 6.0}) {
