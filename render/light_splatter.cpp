@@ -51,9 +51,8 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Lamp
     const ConcentrationField& field =
         emitter.is_mirrored() ? *scene.field_with_image : *scene.field;
     if (!maps.shadows) {
-        maps.shadows =
-            std::make_shared<ShadowMap>(*scene.shadow_casters, maps.lamp, maps.shadow_resolution,
-                                        beam);
+        maps.shadows = std::make_shared<ShadowMap>(*scene.shadow_casters, maps.lamp,
+                                                   maps.shadow_resolution, beam);
         ++counts_.shadow_maps;
         counts_.rays += maps.shadows->rays_traced();
         counts_.bytes += maps.shadows->bytes();

@@ -175,11 +175,11 @@ void focus_suns(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene)
     const bool is_draft = desc.render.quality == RenderDesc::Quality::draft;
     const SunFocus::Extent extent = extent_of_focus(desc, scene);
     for (const LampDesc& lamp : desc.lamps)
-        scene.sun_foci.push_back(
-            lamp.sun && !lamp.sky
-                ? cache.sun_focus(lamp.direction, glm::radians(lamp.sun->angle), extent,
-                                  is_draft ? k_draft_resolution : k_resolution)
-                : nullptr);
+        scene.sun_foci.push_back(lamp.sun && !lamp.sky
+                                     ? cache.sun_focus(lamp.direction,
+                                                       glm::radians(lamp.sun->angle), extent,
+                                                       is_draft ? k_draft_resolution : k_resolution)
+                                     : nullptr);
 }
 
 // Precondition: the lamps are placed.

@@ -220,10 +220,9 @@ bool SceneCache::KeptWaterSurface::is_of(const WaterSurfaceDesc& desc, double at
 const WaterSurface& SceneCache::water_surface(const WaterSurfaceDesc& desc, double time) {
     if (!water_surface_ || !water_surface_->is_of(desc, time)) {
         water_surface_.reset();
-        water_surface_.emplace(
-            KeptWaterSurface{without_waves(desc),
-                             desc.waves ? std::optional(*desc.waves) : std::nullopt, time,
-                             WaterSurface(desc, time)});
+        water_surface_.emplace(KeptWaterSurface{
+            without_waves(desc), desc.waves ? std::optional(*desc.waves) : std::nullopt, time,
+            WaterSurface(desc, time)});
     }
     return water_surface_->surface;
 }
@@ -252,11 +251,13 @@ const SubmergedParts& SceneCache::submerged(
     if (!submerged_ || submerged_->surface != calm || submerged_->surfaces != surfaces ||
         submerged_->field != field) {
         const WaterSurface surface(calm);
-        submerged_ = KeptSubmerged{
-            calm, surfaces, field,
-            {std::make_shared<SubmergedSurfaces>(surfaces, surface, SkyRadiance()),
-             std::make_shared<SubmergedField>(field, surface, false),
-             std::make_shared<SubmergedField>(field, surface, true)}};
+        submerged_ =
+            KeptSubmerged{calm,
+                          surfaces,
+                          field,
+                          {std::make_shared<SubmergedSurfaces>(surfaces, surface, SkyRadiance()),
+                           std::make_shared<SubmergedField>(field, surface, false),
+                           std::make_shared<SubmergedField>(field, surface, true)}};
     }
     return submerged_->parts;
 }

@@ -9,6 +9,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <new>
@@ -116,6 +117,10 @@ class WaterWaves::Shape {
 
     virtual WavePoint at(double u, double v) const = 0;
     virtual WaveStatistics statistics() const = 0;
+    /// How far [m] a ray from a place below the surface stays below it for sure; 0: it may not.
+    virtual double clear_below(const Point3& /*from*/, const Vector3& /*direction*/) const {
+        return 0;
+    }
 
     double lowest = 0, highest = 0;
     double steepest = 0;     // of the slope
@@ -256,9 +261,12 @@ struct HeightLattice {
     };
     double step = 0;     // [m]
     Grid2D<Node> nodes;  // x along u, y along v
+    int block = 1;       // cells along the edge of a square whose least height is known
+    Grid2D<double> lows;
 
     WavePoint at(double u, double v) const {
-        const Cell cell(nodes.width(), nodes.height(), u / step, v / step);
+        const double per_step = 1 / step;
+        const Cell cell(nodes.width(), nodes.height(), u * per_step, v * per_step);
         const Hermite across(cell.x), along(cell.y);
         WavePoint point;
         for (int j = 0; j < 2; ++j)
@@ -275,13 +283,54 @@ struct HeightLattice {
                 point.slope_u += along.value[j] * by_u + along.slope[j] * by_u_v;
                 point.slope_v += along.value_by[j] * value + along.slope_by[j] * value_v;
             }
-        point.slope_u /= step;
-        point.slope_v /= step;
+        point.slope_u *= per_step;
+        point.slope_v *= per_step;
         return point;
     }
 
+    /// As Shape::clear_below: block by block, as long as the ray stays below all of each.
+    double clear_below(double u, double v, double z, const Vector3& direction) const {
+        constexpr int k_most_blocks = 256;
+        constexpr double k_never = std::numeric_limits<double>::infinity();
+        const double blocks_per_metre = 1 / (block * step);
+        // Along one axis: the block, and where the ray leaves it.
+        struct Axis {
+            double index, to_next, per_block, way;
+            int count;
+
+            Axis(double at, double rate, int blocks)
+                : index(std::floor(at)),
+                  to_next(rate > 0   ? (index + 1 - at) / rate
+                          : rate < 0 ? (index - at) / rate
+                                     : k_never),
+                  per_block(rate != 0 ? 1 / std::abs(rate) : k_never),
+                  way(rate > 0 ? 1 : -1),
+                  count(blocks) {}
+            void advance() {
+                index += way;
+                to_next += per_block;
+            }
+            int wrapped() const {
+                const double turns = std::floor(index / count);
+                return std::clamp(static_cast<int>(index - turns * count), 0, count - 1);
+            }
+        };
+        Axis across(u * blocks_per_metre, direction.x * blocks_per_metre, lows.width());
+        Axis along(v * blocks_per_metre, direction.y * blocks_per_metre, lows.height());
+        double clear = 0;
+        for (int i = 0; i < k_most_blocks; ++i) {
+            const double end = std::min(across.to_next, along.to_next);
+            if (end == k_never) break;  // straight up or down
+            const double highest = z + direction.z * (direction.z > 0 ? end : clear);
+            if (!(highest < lows(across.wrapped(), along.wrapped()))) break;
+            clear = end;
+            (across.to_next < along.to_next ? across : along).advance();
+        }
+        return clear;
+    }
+
     /// Bounds over all cells, by the convex hull of their Bezier points.
-    void bound(WaterWaves::Shape& shape) const {
+    void bound(WaterWaves::Shape& shape) {
         struct Bounds {
             double lowest = 1e300, highest = -1e300, slope = 0, curvature = 0;
         };
@@ -323,9 +372,25 @@ struct HeightLattice {
             shape.steepest = std::max(shape.steepest, bounds.slope);
             shape.most_curved = std::max(shape.most_curved, bounds.curvature);
         }
+        bound_blocks();
     }
 
   private:
+    void bound_blocks() {
+        block = 16;
+        while (nodes.width() % block != 0 || nodes.height() % block != 0) block /= 2;
+        lows.assign(nodes.width() / block, nodes.height() / block, 1e300);
+        parallel_for(static_cast<std::size_t>(lows.height()), [&](std::size_t line) {
+            const int first_row = static_cast<int>(line) * block;
+            for (int row = first_row; row < first_row + block; ++row)
+                for (int column = 0; column < nodes.width(); ++column) {
+                    double& low = lows(column / block, static_cast<int>(line));
+                    for (const auto& points : bezier(column, row))
+                        low = std::min(low, *std::ranges::min_element(points));
+                }
+        });
+    }
+
     /// The four nodes around a place, given in steps, and where it is between them, 0..1.
     struct Cell {
         std::array<int, 2> columns, rows;
@@ -338,8 +403,13 @@ struct HeightLattice {
         static std::array<int, 2> neighbours(int count, double at, double& within) {
             const double floor = std::floor(at);
             within = at - floor;
-            const double turns = std::floor(floor / count);
-            const int first = std::clamp(static_cast<int>(floor - turns * count), 0, count - 1);
+            int first = 0;
+            if (floor >= 0 && floor < count) {  // in the tile itself
+                first = static_cast<int>(floor);
+            } else {
+                const double turns = std::floor(floor / count);
+                first = std::clamp(static_cast<int>(floor - turns * count), 0, count - 1);
+            }
             return {first, first + 1 == count ? 0 : first + 1};
         }
     };
@@ -388,6 +458,9 @@ class RandomSea : public WaterWaves::Shape {
     }
 
     WavePoint at(double u, double v) const override { return lattice_.at(u, v); }
+    double clear_below(const Point3& from, const Vector3& direction) const override {
+        return lattice_.clear_below(from.x, from.y, from.z, direction);
+    }
 
     WaveStatistics statistics() const override {
         WaveStatistics sum;
@@ -555,6 +628,9 @@ class ImageHeights : public WaterWaves::Shape {
     WavePoint at(double u, double v) const override {
         return lattice_.at(u - 0.5 * step_, v - 0.5 * step_);
     }
+    double clear_below(const Point3& from, const Vector3& direction) const override {
+        return lattice_.clear_below(from.x - 0.5 * step_, from.y - 0.5 * step_, from.z, direction);
+    }
 
     WaveStatistics statistics() const override {
         double mean = 0;
@@ -674,7 +750,8 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
         const double by_curvature =
             gap.slope < 0 ? 2 * gap.value / (root - gap.slope)
                           : (most_curvature > 0 ? (gap.slope + root) / most_curvature : farthest);
-        const double step = std::max({gap.value / most_slope, by_curvature, k_least_step});
+        const double clear = side < 0 ? shape.clear_below(origin + s * direction, direction) : 0;
+        const double step = std::max({gap.value / most_slope, by_curvature, clear, k_least_step});
         const Gap next = gap_at(s + step);
         if (next.value <= 0) {
             const double crossing = s + step * gap.value / (gap.value - next.value);

@@ -90,9 +90,9 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
             beam.v = static_cast<float>(texels * wave.height * slope_v);
             beam.slope_u = static_cast<float>(texels * (slope_u - shift_u_));
             beam.slope_v = static_cast<float>(texels * (slope_v - shift_v_));
-            beam.flux = static_cast<float>(
-                towards / normal.z * (1 - surface.reflectance_from_air(towards)) /
-                (calm_flux * k_beams_of_texel * k_beams_of_texel));
+            beam.flux = static_cast<float>(towards / normal.z *
+                                           (1 - surface.reflectance_from_air(towards)) /
+                                           (calm_flux * k_beams_of_texel * k_beams_of_texel));
         }
     });
     slices_.resize(k_slices + 1);

@@ -140,9 +140,10 @@ std::vector<double> cotangents_of_breakpoints(const Medium& medium) {
 }
 
 // Number of Gauss nodes for a panel, from the relative change of R across it; only attenuation
-// changes a sun's light.
-int node_count(double length, double nearest_radius, bool parallel) {
-    if (parallel) return 3;
+// changes a sun's light. Where waves focus it panels are short, a few texels of a map that is
+// linear in each.
+int node_count(double length, double nearest_radius, bool parallel, bool focused) {
+    if (parallel) return focused ? 2 : 3;
     if (length < 0.12 * nearest_radius) return 2;
     return length < 0.35 * nearest_radius ? 3 : 4;
 }
@@ -162,7 +163,7 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
         const double begin = panel.stretch.begin + piece * length;
         const double nearest = passage.radius(glm::clamp(passage.foot, begin, begin + length));
         for (const QuadratureNode& node :
-             gauss_legendre(node_count(length, nearest, passage.parallel))) {
+             gauss_legendre(node_count(length, nearest, passage.parallel, lamp.is_focused()))) {
             const double s = begin + node.position * length;
             const double radius = passage.radius(s);
             const Point3 x = ray.at(s);
@@ -209,11 +210,10 @@ LightTransport make_volume(const IntegratorInputs& inputs) {
                 scene, inputs.deep_shadows, DepthTolerance(*scene.medium, depth_tolerance),
                 fineness, part);
         };
-        LightTransport transport{
-            integrator({}),
-            std::make_unique<DirectLighting>(scene, inputs.deep_shadows, column_tolerance)};
+        LightTransport transport{integrator({}), std::make_unique<DirectLighting>(
+                                                     scene, inputs.deep_shadows, column_tolerance)};
         if (std::ranges::any_of(*scene.emitters, &Lamp::is_focused))
-            for (const bool focused : {true, false})
+            for (const bool focused : {false, true})
                 transport.parts.push_back(integrator({.focused = focused, .even = !focused}));
         return transport;
     };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -280,9 +281,11 @@ InScatterLattice::InScatterLattice(const RaySource& rays, const LitScene& scene,
       interpolated_(value_count_),
       integrated_(value_count_) {}
 
-void InScatterLattice::evaluate(const PixelWindow& tile, const Grid2D<PixelView>& views) {
+void InScatterLattice::evaluate(const PixelWindow& tile, const Grid2D<PixelView>& views,
+                                std::span<const double> beside) {
     tile_ = tile;
     views_ = &views;
+    beside_.assign(beside.begin(), beside.end());
     pixel_values_.assign(views.size() * value_count_, 0.0);
     collect_distances();
     nodes_.assign(k_side, k_side);
@@ -294,6 +297,18 @@ void InScatterLattice::evaluate(const PixelWindow& tile, const Grid2D<PixelView>
     particles_.begin(tile, k_tile, reach);
     for (int j = 0; j < tile.height(); j += k_coarsest)
         for (int i = 0; i < tile.width(); i += k_coarsest) fill_cell(i, j, k_coarsest);
+}
+
+void InScatterLattice::find_least(std::span<double> least) const {
+    const std::size_t bands = floor_.size();
+    std::ranges::fill(least, pixel_values_.empty() ? 0 : std::numeric_limits<double>::infinity());
+    for (std::size_t first = 0; first < pixel_values_.size(); first += value_count_)
+        for (std::size_t b = 0; b < bands; ++b) {
+            double light = 0;
+            for (std::size_t k = b; k < in_scatter_.group_count() * bands; k += bands)
+                light += pixel_values_[first + k];
+            least[b] = std::min(least[b], light);
+        }
 }
 
 void InScatterLattice::collect_distances() {
@@ -458,7 +473,8 @@ bool InScatterLattice::agree(const Corners& from, const Place& place, const Node
             difference += interpolated_[k] - integrated_[k];
             light += integrated_[k];
         }
-        if (!(std::abs(difference) <= allowed * std::max(light, floor_[b]))) return false;
+        const double reference = std::max(light + beside_[b], floor_[b]);
+        if (!(std::abs(difference) <= allowed * reference)) return false;
     }
     return true;
 }

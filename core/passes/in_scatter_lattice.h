@@ -120,8 +120,12 @@ class InScatterLattice {
 
     /// Computes the in-scatter of the pixels of `tile` (k_tile along an edge, less at the image's
     /// right and bottom). `views`, those of these pixels, must stay valid while the values are
-    /// used.
-    void evaluate(const PixelWindow& tile, const Grid2D<PixelView>& views);
+    /// used. `beside`: what is added to these values in each pixel, at least, by band; the
+    /// tolerance is of both.
+    void evaluate(const PixelWindow& tile, const Grid2D<PixelView>& views,
+                  std::span<const double> beside);
+    /// The least value of the tile's pixels by band, over all groups.
+    void find_least(std::span<double> least) const;
 
     /// The values (RayInScatter) of one pixel of the tile, by its index in `views`; zeros where no
     /// ray enters the water.
@@ -191,7 +195,8 @@ class InScatterLattice {
     std::vector<double> pixel_values_;          // pixel by pixel
     Grid2D<Node> nodes_;
     std::vector<double> node_values_;
-    std::vector<double> floor_;  // per band: least reference for errors [W m^-2 sr^-1]
+    std::vector<double> floor_;   // per band: least reference for errors [W m^-2 sr^-1]
+    std::vector<double> beside_;  // per band
     std::vector<double> interpolated_, integrated_;
 };
 

@@ -48,6 +48,7 @@ class TileRenderer {
     SurfaceLight light_;                      // on all their samples
     std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
     std::vector<double> in_scatter_;          // of the current pixel
+    std::vector<double> beside_, least_;      // of a part of all bands, in any pixel of the tile
     PixelResult result_;
 };
 
@@ -70,7 +71,13 @@ void TileRenderer::begin(const PixelWindow& tile) {
         first_samples_.push_back(samples);
         samples += view.samples.size();
     }
-    for (InScatterLattice& lattice : lattices_) lattice.evaluate(tile, views_);
+    beside_.assign(renderer_.in_scatter().band_count(), 0.0);
+    for (InScatterLattice& lattice : lattices_) {
+        lattice.evaluate(tile, views_, beside_);
+        least_.resize(beside_.size());
+        lattice.find_least(least_);
+        add(beside_, least_);
+    }
 }
 
 void TileRenderer::find_in_scatter(std::size_t pixel) {

@@ -1,9 +1,9 @@
 // ctest labels: metamorphic slow
 //
-// In water that absorbs nothing, over a white floor and under a uniform sky, light is in equilibrium:
-// its radiance is n^2 that of the sky everywhere and in every direction, scattered, reflected by the
-// floor and by the surface from below any number of times. Only then does as much leave as enters. To
-// a thousandth, which light paths take minutes to tell.
+// In water that absorbs nothing, over a white floor and under a uniform sky, light is in
+// equilibrium: its radiance is n^2 that of the sky everywhere and in every direction, scattered,
+// reflected by the floor and by the surface from below any number of times. Only then does as much
+// leave as enters. To a thousandth, which light paths take minutes to tell.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -53,8 +53,7 @@ TEST(LightEquilibrium, ClosesToAThousandth) {
     SceneDesc desc = in_equilibrium();
     constexpr int k_pixels = 64 * 64;
     desc.render.samples = 1024;
-    const double truth =
-        k_radiance_of_sky * k_index_in_equilibrium * k_index_in_equilibrium;
+    const double truth = k_radiance_of_sky * k_index_in_equilibrium * k_index_in_equilibrium;
     std::array<double, 3> all{};
     double variance = 0;
     for (const double tilt : {-90.0, 60.0}) {

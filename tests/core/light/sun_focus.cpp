@@ -112,8 +112,8 @@ TEST(SunFocus, TravelsWithItsWave) {
     for (const double texels : {0.25, 0.5, 9.37}) {
         const double way = texels * texel;
         const MapOfMoment after(waves, way / speed);
-        const double change = spread_of(
-            [&](double u, double v) { return after.at(u + way, v) - before.at(u, v); });
+        const double change =
+            spread_of([&](double u, double v) { return after.at(u + way, v) - before.at(u, v); });
         // What linear interpolation between texels leaves out: h''/8 of the texel's square.
         EXPECT_LT(change, 0.01 * contrast) << texels;
         EXPECT_GT(spread_of([&](double u, double v) { return after.at(u, v) - before.at(u, v); }),
