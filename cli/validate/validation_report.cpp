@@ -5,57 +5,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 
-#include "cli/report.h"
+#include "cli/html_page.h"
 #include "cli/svg_plot.h"
-#include "core/base/output_files.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/image/colour.h"
-#include "core/image/image_file.h"
 #include "validation/validation_methods.h"
 
 namespace uw {
 
 namespace {
-
-constexpr int k_picture_width = 288;  // of one picture on the page [CSS pixels]
-
-std::string base64(const std::string& bytes) {
-    static constexpr const char* k_digits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        unsigned group = 0;
-        for (std::size_t j = 0; j < 3; ++j)
-            group =
-                group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
-        for (std::size_t j = 0; j < 4; ++j)
-            text += i + j > bytes.size() ? '=' : k_digits[group >> (18 - 6 * j) & 63U];
-    }
-    return text;
-}
-
-constexpr const char* k_report_style =
-    "body{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;"
-    "color:#222}table{border-collapse:collapse;margin:1em 0}td,th{padding:.15em .8em;"
-    "border-bottom:1px solid "
-    "#ddd;text-align:left}td.n{text-align:right;white-space:nowrap;font-variant-numeric:"
-    "tabular-nums}.failed{color:#c00;font-weight:bold}.passed{color:#070}figure{display:"
-    "inline-block;margin:0 1em 1em "
-    "0;vertical-align:top}figcaption{font-size:13px;max-width:288px}img{image-"
-    "rendering:pixelated;display:block;border:1px solid #ccc}";
-
-std::string verdict_html(bool passed) {
-    return passed ? "<span class=passed>passed</span>" : "<span class=failed>FAILED</span>";
-}
-
-constexpr const char* k_not_compared = "not compared";
-
-/// What became of a check.
-enum class Verdict : std::uint8_t { none, passed, failed, not_compared };
 
 Verdict verdict_on(const Check& check) {
     if (!check.passed()) return Verdict::failed;
@@ -66,54 +26,8 @@ Verdict verdict_on(const LightCheck& check) {
     return check.passed() ? Verdict::passed : Verdict::failed;
 }
 
-/// A table for people, as lines of text or in HTML.
-struct Table {
-    struct Row {
-        std::vector<std::string> cells;
-        Verdict verdict = Verdict::none;
-    };
-    std::vector<std::string> headings;
-    std::size_t names;  // that many columns come first, and hold no numbers
-    std::vector<Row> rows{};
-
-    /// Rows of what failed are red if `colour` is set.
-    std::string text(bool colour) const {
-        std::vector<std::vector<std::string>> cells{headings};
-        for (const Row& row : rows) cells.push_back(row.cells);
-        const std::vector<std::string> lines = aligned_rows(cells, names);
-        std::string text = "  " + lines[0] + "\n";
-        for (std::size_t i = 0; i < rows.size(); ++i) {
-            const bool failed = rows[i].verdict == Verdict::failed;
-            std::string line = "  " + lines[1 + i];
-            if (failed) line += "  FAILED";
-            if (rows[i].verdict == Verdict::passed) line += "  passed";
-            if (rows[i].verdict == Verdict::not_compared)
-                line += fmt::format("  {}", k_not_compared);
-            text += colour && failed ? "\033[31m" + line + "\033[0m\n" : line + "\n";
-        }
-        return text;
-    }
-
-    std::string html() const {
-        std::string html = "<table><tr>";
-        for (const std::string& heading : headings) html += "<th>" + heading + "</th>";
-        html += "</tr>\n";
-        for (const Row& row : rows) {
-            html += "<tr>";
-            for (std::size_t i = 0; i < row.cells.size(); ++i)
-                html += (i < names ? "<td>" : "<td class=n>") + row.cells[i] + "</td>";
-            if (row.verdict == Verdict::not_compared)
-                html += fmt::format("<td>{}</td>", k_not_compared);
-            else if (row.verdict != Verdict::none)
-                html += "<td>" + verdict_html(row.verdict == Verdict::passed) + "</td>";
-            html += "</tr>\n";
-        }
-        return html + "</table>\n";
-    }
-};
-
-Table checks_of(const SceneValidation& scene) {
-    Table table{{"methods", "component", "band", "pixels", "largest", "RMS", "tolerance"}, 2};
+ReportTable checks_of(const SceneValidation& scene) {
+    ReportTable table{{"methods", "component", "band", "pixels", "largest", "RMS", "tolerance"}, 2};
     for (const Check& c : scene.checks)
         table.rows.push_back(
             {{c.left + " - " + c.right, c.component.name,
@@ -137,8 +51,8 @@ std::string left_uncompared(const SceneValidation& scene) {
         count == 1 ? "its" : "their");
 }
 
-Table checks_of(const LightValidation& light) {
-    Table table{
+ReportTable checks_of(const LightValidation& light) {
+    ReportTable table{
         {"methods", "light", "deviation", "its error", "in errors", "RMS", "in errors", "worst"},
         2};
     for (const LightCheck& c : light.checks) {
@@ -157,39 +71,21 @@ Table checks_of(const LightValidation& light) {
 }
 
 /// Which way the light took, per band.
-Table parts_of(const LightValidation& light) {
-    Table table{{"share of the light"}, 1};
+ReportTable parts_of(const LightValidation& light) {
+    ReportTable table{{"share of the light"}, 1};
     for (const double band : light.bands_nm) table.headings.push_back(fmt::format("{:g} nm", band));
     for (std::size_t part = 0; part < LightParts::k_names.size(); ++part) {
-        Table::Row& row = table.rows.emplace_back(Table::Row{{LightParts::k_names[part]}});
+        ReportTable::Row& row =
+            table.rows.emplace_back(ReportTable::Row{{LightParts::k_names[part]}});
         for (const LightParts& parts : light.parts)
             row.cells.push_back(fmt::format("{:.1f} %", 100 * parts.share(part)));
     }
-    Table::Row& row = table.rows.emplace_back(Table::Row{{"all light / single scattering"}});
+    ReportTable::Row& row =
+        table.rows.emplace_back(ReportTable::Row{{"all light / single scattering"}});
     for (const LightParts& parts : light.parts)
         row.cells.push_back(fmt::format("{:.3f}", parts.ratio()));
     return table;
 }
-
-/// Turns pictures into HTML that needs no other files; owns the folder for temporary ones.
-class ReportPictures {
-  public:
-    /// A picture with a caption below.
-    std::string figure(const Preview& picture, const std::string& caption) const {
-        const std::filesystem::path file = folder_.path() / "picture.png";
-        write_png(file, picture, {});
-        std::ifstream in(file, std::ios::binary);
-        const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-        return fmt::format(
-            "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"
-            "<figcaption>{}</figcaption></figure>\n",
-            k_picture_width, k_picture_width * picture.height() / std::max(1, picture.width()),
-            caption, base64(bytes), caption);
-    }
-
-  private:
-    ScratchFolder folder_;
-};
 
 // Deviations by check, in standard errors, between the limits.
 std::string deviations_svg(const LightValidation& light) {
@@ -216,7 +112,7 @@ std::string deviations_svg(const LightValidation& light) {
     return svg_document(figure);
 }
 
-std::string light_section(const LightValidation& light, const ReportPictures& pictures) {
+std::string light_section(const LightValidation& light, const HtmlPictures& pictures) {
     std::string html =
         fmt::format("<h2>{}: {}</h2>\n<p>", light.name, verdict_html(light.passed()));
     for (const std::string& line : light.notes) html += line + ". ";
@@ -327,7 +223,7 @@ std::string convergence_plot(const SceneValidation& scene) {
 
 // One picture per method that has all of `components`; empty if none has.
 std::string pictures_of(const SceneValidation& scene, const Components& components,
-                        const std::string& title, ReportPictures& pictures) {
+                        const std::string& title, HtmlPictures& pictures) {
     std::string html;
     double exposure = 0;
     for (const auto& [name, image] : scene.images) {
@@ -342,20 +238,20 @@ std::string pictures_of(const SceneValidation& scene, const Components& componen
 }
 
 std::string differences_of(const SceneValidation& scene, const Component& component,
-                           ReportPictures& pictures) {
+                           HtmlPictures& pictures) {
     std::string html;
     for (const Check& check : scene.checks) {
         if (check.component.image != component.image || check.band != 0) continue;
         const DifferenceMap map = difference_map(scene, check);
         const std::string largest =
-            check.is_compared() ? fmt::format("{:.2g} %", 100 * map.full_colour) : k_not_compared;
+            check.is_compared() ? fmt::format("{:.2g} %", 100 * map.full_colour) : "not compared";
         html += pictures.figure(map.picture,
                                 fmt::format("{} − {}: {}", check.left, check.right, largest));
     }
     return html.empty() ? html : fmt::format("<h4>{}</h4>\n{}", component.name, html);
 }
 
-std::string section_of(const SceneValidation& scene, ReportPictures& pictures) {
+std::string section_of(const SceneValidation& scene, HtmlPictures& pictures) {
     std::string html = fmt::format("<h2>{}: {}</h2>\n", scene.name, verdict_html(scene.passed()));
     const auto smooth = std::count(scene.smooth.begin(), scene.smooth.end(), char{1});
     html += fmt::format(
@@ -418,16 +314,14 @@ std::string validation_table(const SceneValidation& scene, bool colour) {
 
 std::string validation_page(const std::vector<SceneValidation>& scenes,
                             const std::vector<LightValidation>& lights) {
-    ReportPictures pictures;
+    HtmlPictures pictures;
     std::string html = fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>uwvdb validate"
-        "</title><style>{}</style></head><body>\n<h1>uwvdb validate</h1>\n<p>uwvdb {}. Every way "
-        "of computing a scene against the others; tolerances are of the largest relative "
-        "difference; the RMS may be three times the tolerance given.</p>\n",
-        k_report_style, program_version());
+        "<p>uwvdb {}. Every way of computing a scene against the others; tolerances are of the "
+        "largest relative difference; the RMS may be three times the tolerance given.</p>\n",
+        program_version());
     for (const SceneValidation& scene : scenes) html += section_of(scene, pictures);
     for (const LightValidation& light : lights) html += light_section(light, pictures);
-    return html + "</body></html>\n";
+    return html_page("uwvdb validate", html);
 }
 
 }  // namespace uw

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/base/output_files.h"
+#include "core/image/pixel_image.h"
+
+namespace uw {
+
+/// What became of a check.
+enum class Verdict : std::uint8_t { none, passed, failed, not_compared };
+
+/// "passed" or "FAILED", in colour.
+std::string verdict_html(bool passed);
+
+/// A table for people, as lines of text or in HTML. All rows have as many cells as there are
+/// headings; a verdict follows after them.
+struct ReportTable {
+    struct Row {
+        std::vector<std::string> cells;
+        Verdict verdict = Verdict::none;
+    };
+    std::vector<std::string> headings;
+    std::size_t names;  // that many columns come first, and hold no numbers
+    std::vector<Row> rows{};
+
+    /// Indented lines. Rows of what failed are red if `colour` is set.
+    std::string text(bool colour) const;
+    /// A table element; the cells are text, and are escaped.
+    std::string html() const;
+};
+
+/// Turns pictures into HTML that needs no other files; owns the folder for temporary ones.
+class HtmlPictures {
+  public:
+    /// A figure element: a picture with a caption below. Throws IoError.
+    std::string figure(const Preview& picture, const std::string& caption) const;
+
+  private:
+    ScratchFolder folder_;
+};
+
+/// One self-contained page with this title, which is its first heading, too. `body` is HTML. The
+/// same arguments give the same bytes.
+std::string html_page(const std::string& title, const std::string& body);
+
+}  // namespace uw
