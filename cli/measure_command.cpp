@@ -31,7 +31,9 @@ const char* const k_measure_examples = R"(Examples:
 Reads the scene's `sensors` in all light, scattered and reflected any number of times: plane
 irradiance that travels down and up (Ed, Eu), scalar irradiance from above and below (Eod, Eou),
 in W/m2, radiance that travels straight up (Lu), in W/(m2 sr), each with its standard error; the
-irradiance reflectance R = Eu/Ed, and between points of a line Kd = -d ln Ed / d depth [1/m].
+irradiance reflectance R = Eu/Ed, and between points of a line Kd = -d ln Ed / d depth [1/m]. At
+the water's surface where a sensor begins, if it is calm and lit from the air: the water-leaving
+radiance Lw and the remote-sensing reflectance Rrs = Lw/Ed, both in the air.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
 
 struct MeasureArguments {
@@ -79,6 +81,7 @@ struct Reading {
 struct SensorReadings {
     const MeterDesc* sensor;
     std::vector<Reading> readings;
+    std::optional<WaterLeaving> leaving;  // at the surface above the first
 
     /// -d ln Ed / d way along the line before point `i` [1/m]; none at the first.
     std::optional<double> attenuation(std::size_t i, std::size_t band) const {
@@ -94,13 +97,16 @@ struct SensorReadings {
 std::vector<SensorReadings> read_all(const MeasureArguments& a, const AssembledScene& scene) {
     const SceneDesc& desc = scene.desc();
     std::size_t count = 0;
-    for (const MeterDesc& sensor : desc.meters) count += sensor.points.size();
+    for (const MeterDesc& sensor : desc.meters) count += sensor.points.size() + 1;
     Progress progress("measure", "points", static_cast<double>(count), a.progress);
     const LightMeter meter(scene);
     std::vector<SensorReadings> all;
     std::size_t done = 0;
+    const auto tell = [&] {
+        if (!a.quiet) progress.update(static_cast<double>(++done) / static_cast<double>(count));
+    };
     for (const MeterDesc& sensor : desc.meters) {
-        SensorReadings& readings = all.emplace_back(SensorReadings{&sensor, {}});
+        SensorReadings& readings = all.emplace_back(SensorReadings{&sensor, {}, {}});
         for (const Point3& point : sensor.points) {
             Reading reading{point, {}, {}};
             if (const auto& surface = desc.water.surface)
@@ -112,8 +118,10 @@ std::vector<SensorReadings> read_all(const MeasureArguments& a, const AssembledS
                     sensor.where, -*reading.depth));
             reading.value = meter.read(point, sensor.up, a.rays);
             readings.readings.push_back(std::move(reading));
-            if (!a.quiet) progress.update(static_cast<double>(++done) / static_cast<double>(count));
+            tell();
         }
+        readings.leaving = meter.read_water_leaving(sensor.points.front(), a.rays);
+        tell();
     }
     return all;
 }
@@ -126,6 +134,28 @@ std::string with_error(const MeteredSpectrum& value, std::size_t band) {
 
 std::string ratio_text(double over, double under) {
     return under > 0 ? fmt::format("{:.3g}", over / under) : "-";
+}
+
+Json per_band_json(const Spectrum& value, std::size_t bands) {
+    Json list = Json::array();
+    for (std::size_t b = 0; b < bands; ++b) list.push_back(value[b]);
+    return list;
+}
+
+/// Adds what leaves the water to its sensor's report.
+void report_leaving(const WaterLeaving& leaving, const std::vector<double>& bands, Report& sensor) {
+    std::vector<std::vector<std::string>> rows{{"in the air", "nm", "Ed", "Lw", "Rrs 1/sr"}};
+    for (std::size_t b = 0; b < bands.size(); ++b)
+        rows.push_back({"", fmt::format("{:g}", bands[b]),
+                        fmt::format("{:.4g}", leaving.irradiance[b]),
+                        with_error(leaving.radiance, b), with_error(leaving.reflectance, b)});
+    for (const std::string& row : aligned_rows(rows, 1)) sensor.say(row);
+    const std::size_t count = bands.size();
+    sensor.set({{"Ed_in_air", per_band_json(leaving.irradiance, count)},
+                {"Lw", per_band_json(leaving.radiance.mean, count)},
+                {"Lw_error", per_band_json(leaving.radiance.error, count)},
+                {"Rrs", per_band_json(leaving.reflectance.mean, count)},
+                {"Rrs_error", per_band_json(leaving.reflectance.error, count)}});
 }
 
 Report report_on(const std::vector<SensorReadings>& all, const std::vector<double>& bands) {
@@ -143,13 +173,10 @@ Report report_on(const std::vector<SensorReadings>& all, const std::vector<doubl
             point.set({{"position", {reading.point.x, reading.point.y, reading.point.z}}});
             if (reading.depth) point.set({{"depth_m", *reading.depth}});
             for (const Quantity& quantity : k_quantities) {
-                Json means = Json::array(), errors = Json::array();
-                for (std::size_t b = 0; b < bands.size(); ++b) {
-                    means.push_back((reading.value.*quantity.value).mean[b]);
-                    errors.push_back((reading.value.*quantity.value).error[b]);
-                }
-                point.set(
-                    {{quantity.name, means}, {std::string(quantity.name) + "_error", errors}});
+                const MeteredSpectrum& value = reading.value.*quantity.value;
+                point.set({{quantity.name, per_band_json(value.mean, bands.size())},
+                           {std::string(quantity.name) + "_error",
+                            per_band_json(value.error, bands.size())}});
             }
             Json slopes = Json::array();
             for (std::size_t b = 0; b < bands.size(); ++b) {
@@ -167,6 +194,7 @@ Report report_on(const std::vector<SensorReadings>& all, const std::vector<doubl
             points.push_back(std::move(point));
         }
         for (const std::string& row : aligned_rows(rows, 0)) sensor.say(row);
+        if (of.leaving) report_leaving(*of.leaving, bands, sensor);
         sensor.add("points", points);
         sensors.push_back(std::move(sensor));
     }
@@ -178,10 +206,10 @@ Report report_on(const std::vector<SensorReadings>& all, const std::vector<doubl
 std::string csv_of(const std::vector<SensorReadings>& all, const std::vector<double>& bands) {
     std::string text =
         "# plane and scalar irradiance in W/m2, radiance in W/(m2 sr), Kd in 1/m from the point "
-        "before\nsensor,x,y,z,depth_m,band_nm";
+        "before, Rrs in 1/sr at the surface above the first point\nsensor,x,y,z,depth_m,band_nm";
     for (const Quantity& quantity : k_quantities)
         text += fmt::format(",{0},{0}_error", quantity.name);
-    text += ",Kd\n";
+    text += ",Kd,Rrs,Rrs_error\n";
     for (const SensorReadings& of : all) {
         for (std::size_t i = 0; i < of.readings.size(); ++i) {
             const Reading& reading = of.readings[i];
@@ -195,7 +223,11 @@ std::string csv_of(const std::vector<SensorReadings>& all, const std::vector<dou
                     text += fmt::format(",{:.6g},{:.3g}", value.mean[b], value.error[b]);
                 }
                 const std::optional<double> slope = of.attenuation(i, b);
-                text += slope ? fmt::format(",{:.6g}\n", *slope) : ",\n";
+                text += slope ? fmt::format(",{:.6g}", *slope) : ",";
+                text += i == 0 && of.leaving
+                            ? fmt::format(",{:.6g},{:.3g}\n", of.leaving->reflectance.mean[b],
+                                          of.leaving->reflectance.error[b])
+                            : ",,\n";
             }
         }
     }

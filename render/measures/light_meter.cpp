@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -234,6 +235,73 @@ double mean_radiance(const AssembledScene& scene, const LightTransport& transpor
     return sum / k_trial_rays / (4 * std::numbers::pi);
 }
 
+std::uint64_t seed_at(const Point3& x) {
+    return PathRandom::seed_of(
+        k_meter_seed,
+        PathRandom::seed_of(std::bit_cast<std::uint64_t>(x.x), std::bit_cast<std::uint64_t>(x.y),
+                            std::bit_cast<std::uint64_t>(x.z)));
+}
+
+/// The radiance from all around, in the mean: two trials, the second of which knows what the first
+/// has found.
+double typical_radiance(const AssembledScene& scene, const LightTransport& transport,
+                        const Directions& directions, const Point3& x) {
+    double typical = 0;
+    for (std::uint64_t trial = 0; trial < 2; ++trial)
+        typical = mean_radiance(scene, transport, directions, x, trial, typical);
+    return typical;
+}
+
+/// The mean of `rays` estimates along one ray; `seed` tells batches apart.
+Spectrum mean_along(RadianceEstimate& estimate, const Ray& ray, std::uint64_t seed, int rays) {
+    Spectrum mean{};
+    for (int i = 0; i < rays; ++i) {
+        throw_if_stopped();
+        Spectrum light = estimate(ray, seed, static_cast<std::uint32_t>(i), true);
+        light /= rays;
+        mean += light;
+    }
+    return mean;
+}
+
+/// The mean over the batches, and its standard error by their spread.
+MeteredSpectrum over_batches(const std::array<Spectrum, k_batches>& batches) {
+    MeteredSpectrum value;
+    Spectrum squares{};
+    for (Spectrum mean : batches) {
+        value.mean += mean;
+        mean *= mean;
+        squares += mean;
+    }
+    value.mean /= k_batches;
+    for (std::size_t b = 0; b < k_max_bands; ++b)
+        value.error[b] =
+            std::sqrt(std::max(0.0, squares[b] / k_batches - value.mean[b] * value.mean[b]) /
+                      (k_batches - 1));
+    return value;
+}
+
+/// Plane irradiance on calm water, in the air, by the beams that enter it; what is in shadow at `x`
+/// is not left out. What a beam carries through the level in the water, E_n cos, is the share
+/// 1 - R of what it brings in the air.
+Spectrum irradiance_in_air(const AssembledScene& scene, const Point3& x) {
+    const WaterSurface& surface = *scene.water_surface;
+    Spectrum total{};
+    for (const Lamp& emitter : scene.emitters) {
+        const Sunlight* sun = emitter.sunlight();
+        if (sun == nullptr) continue;
+        const double cosine = -glm::dot(sun->direction, surface.up());
+        const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * surface.n();
+        if (!(cosine > 0) || !(sine < 1)) continue;
+        const Point3 origin = emitter.origin(x);
+        const double let_in = 1 - surface.reflectance_from_air(std::sqrt(1 - sine * sine));
+        Spectrum light = emitter.axis_intensity();
+        light *= emitter.relative_intensity(x - origin) * cosine / let_in;
+        total += light;
+    }
+    return total;
+}
+
 constexpr std::array k_readings{&MeterReading::down,          &MeterReading::up,
                                 &MeterReading::scalar_down,   &MeterReading::scalar_up,
                                 &MeterReading::radiance_down, &MeterReading::radiance_up};
@@ -247,14 +315,8 @@ MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) cons
     const std::vector<Beam> beams = beams_at(scene_, x);
     const Directions directions(beams);
     const int in_batch = std::max(1, rays / k_batches);
-    // Two trials, the second of which knows what the first has found.
-    double typical = 0;
-    for (std::uint64_t trial = 0; trial < 2; ++trial)
-        typical = mean_radiance(scene_, transport_, directions, x, trial, typical);
-    const std::uint64_t seed =
-        PathRandom::seed_of(k_meter_seed, PathRandom::seed_of(std::bit_cast<std::uint64_t>(x.x),
-                                                              std::bit_cast<std::uint64_t>(x.y),
-                                                              std::bit_cast<std::uint64_t>(x.z)));
+    const double typical = typical_radiance(scene_, transport_, directions, x);
+    const std::uint64_t seed = seed_at(x);
     std::array<MeterReading, k_batches> batches;
     parallel_for(batches.size(), [&](std::size_t batch) {
         RadianceEstimate estimate(scene_, transport_, typical);
@@ -276,34 +338,17 @@ MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) cons
             (rise > 0 ? sums.down : sums.up).mean += light;
         }
         const int vertical = std::max(1, in_batch / k_share_of_vertical);
-        for (const auto& [reading, from] : {std::pair{&MeterReading::radiance_down, up},
-                                            std::pair{&MeterReading::radiance_up, -up}}) {
-            for (int i = 0; i < vertical; ++i) {
-                throw_if_stopped();
-                Spectrum light = estimate(
-                    {x, from},
-                    PathRandom::seed_of(seed, batch, reading == &MeterReading::radiance_up ? 2 : 3),
-                    static_cast<std::uint32_t>(i), true);
-                light /= vertical;
-                (sums.*reading).mean += light;
-            }
-        }
+        sums.radiance_down.mean =
+            mean_along(estimate, {x, up}, PathRandom::seed_of(seed, batch, 3), vertical);
+        sums.radiance_up.mean =
+            mean_along(estimate, {x, -up}, PathRandom::seed_of(seed, batch, 2), vertical);
     });
     MeterReading result;
     for (const auto reading : k_readings) {
-        MeteredSpectrum& value = result.*reading;
-        Spectrum squares{};
-        for (const MeterReading& batch : batches) {
-            Spectrum mean = (batch.*reading).mean;
-            value.mean += mean;
-            mean *= mean;
-            squares += mean;
-        }
-        value.mean /= k_batches;
-        for (std::size_t b = 0; b < k_max_bands; ++b)
-            value.error[b] =
-                std::sqrt(std::max(0.0, squares[b] / k_batches - value.mean[b] * value.mean[b]) /
-                          (k_batches - 1));
+        std::array<Spectrum, k_batches> means;
+        std::ranges::transform(batches, means.begin(),
+                               [&](const MeterReading& batch) { return (batch.*reading).mean; });
+        result.*reading = over_batches(means);
     }
     for (const Beam& beam : beams) {
         const double rise = glm::dot(beam.towards, up);
@@ -311,6 +356,38 @@ MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) cons
         (rise > 0 ? result.scalar_down : result.scalar_up).mean += light;
         light *= std::abs(rise);
         (rise > 0 ? result.down : result.up).mean += light;
+    }
+    return result;
+}
+
+std::optional<WaterLeaving> LightMeter::read_water_leaving(const Point3& x, int rays) const {
+    constexpr double k_below = 1e-6;  // of the surface [m]
+    const std::optional<WaterSurface>& surface = scene_.water_surface;
+    if (!surface || surface->has_waves()) return std::nullopt;
+    const Vector3& up = surface->up();
+    const Point3 below = x - (surface->height(x) + k_below) * up;
+    WaterLeaving result;
+    result.irradiance = irradiance_in_air(scene_, below);
+    const auto bands = static_cast<std::size_t>(scene_.water.medium.band_count());
+    if (std::ranges::all_of(result.irradiance.first(bands), [](double e) { return !(e > 0); }))
+        return std::nullopt;
+    const std::vector<Beam> beams = beams_at(scene_, below);
+    const double typical = typical_radiance(scene_, transport_, Directions(beams), below);
+    std::array<Spectrum, k_batches> batches;
+    parallel_for(batches.size(), [&](std::size_t batch) {
+        RadianceEstimate estimate(scene_, transport_, typical);
+        batches[batch] =
+            mean_along(estimate, {below, -up}, PathRandom::seed_of(seed_at(below), batch, 2),
+                       std::max(1, rays / k_batches));
+    });
+    result.radiance = over_batches(batches);
+    const double leaves = (1 - surface->reflectance_from_water(1)) / (surface->n() * surface->n());
+    result.radiance.mean *= leaves;
+    result.radiance.error *= leaves;
+    for (std::size_t b = 0; b < bands; ++b) {
+        if (!(result.irradiance[b] > 0)) continue;
+        result.reflectance.mean[b] = result.radiance.mean[b] / result.irradiance[b];
+        result.reflectance.error[b] = result.radiance.error[b] / result.irradiance[b];
     }
     return result;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "core/base/spectrum.h"
 #include "core/base/vector_math.h"
@@ -25,6 +26,15 @@ struct MeterReading {
     MeteredSpectrum radiance_down, radiance_up;
 };
 
+/// What a radiometer above calm water tells of the water below (Mobley 1999, "Estimation of the
+/// remote-sensing reflectance from above-surface measurements", Applied Optics 38, 7442). Light
+/// that the surface reflects is left out.
+struct WaterLeaving {
+    Spectrum irradiance{};        // E_d in the air: all of suns and sky [W/m^2]
+    MeteredSpectrum radiance;     // L_w, straight up, in the air [W m^-2 sr^-1]
+    MeteredSpectrum reflectance;  // R_rs = L_w / E_d [1/sr]; 0 in bands without irradiance
+};
+
 /// Reads all light at points of a scene, by light paths: that of lamps, suns and sky directly by
 /// their directions, the rest by rays drawn evenly in all directions and towards lamps. Thread
 /// safe.
@@ -36,6 +46,11 @@ class LightMeter {
     /// At `x`, where `up` (unit) is up: `rays` rays, at least 16, in 16 batches, whose spread is
     /// the standard error. Runs on all threads. The same point and number give the same numbers.
     MeterReading read(const Point3& x, const Vector3& up, int rays) const;
+
+    /// At the water's surface above or below `x`, by `rays` rays, straight down from just below it:
+    /// L_w = (1 - R) L_u / n^2, with Fresnel's reflectance R (Mobley 1999, equation 4, where waves
+    /// are calm). None if the surface has no index or has waves, or if no sun or sky lights it.
+    std::optional<WaterLeaving> read_water_leaving(const Point3& x, int rays) const;
 
   private:
     const AssembledScene& scene_;

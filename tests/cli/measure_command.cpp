@@ -46,6 +46,11 @@ TEST_F(Measure, PrintsTablesAndWritesThem) {
     EXPECT_EQ(depths[2], 5);
     EXPECT_GT(down[0], 3 * down[2]);  // 620 nm, 1 m and 5 m down
     EXPECT_LT(down[1], 2);            // what the surface lets through of 2 W/m2
+    EXPECT_NE(result.out.find("Rrs 1/sr"), std::string::npos);
+    const std::vector<std::string> leaving = table.text("Rrs");
+    EXPECT_GT(std::stod(leaving[0]), 0);
+    EXPECT_GT(std::stod(leaving[1]), std::stod(leaving[0]));  // 540 nm scatters more, absorbs less
+    EXPECT_EQ(leaving[2], "");                                // of a line's first point alone
 }
 
 TEST_F(Measure, GivesJson) {
@@ -57,6 +62,10 @@ TEST_F(Measure, GivesJson) {
     EXPECT_TRUE(points[0].at("Kd")[0].is_null());
     EXPECT_GT(points[1].at("Kd")[0].get<double>(), points[1].at("Kd")[1].get<double>());
     EXPECT_EQ(points[0].at("Ed").size(), 2U);
+    const Json& sensor = json.at("sensors").at(0);
+    EXPECT_NEAR(sensor.at("Ed_in_air")[1].get<double>(), 2, 0.2);  // by 8 directions
+    EXPECT_DOUBLE_EQ(sensor.at("Rrs")[1].get<double>(),
+                     sensor.at("Lw")[1].get<double>() / sensor.at("Ed_in_air")[1].get<double>());
 }
 
 TEST_F(Measure, RefusesWhatItCannotRead) {

@@ -6,8 +6,10 @@
 
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numbers>
 
+#include "core/scene/sky_desc.h"
 #include "render/renderer.h"
 #include "tests/support/fresnel_by_angles.h"
 #include "tests/support/test_scene.h"
@@ -69,6 +71,66 @@ TEST(LightMeter, ReadsASunAndAFloor) {
     constexpr double k_internal = 0.480;
     EXPECT_NEAR(reading.down.mean[0], below / (1 - 0.5 * k_internal), 0.01 * below);
     EXPECT_LT(reading.up.error[0], 0.01 * reading.up.mean[0]);
+}
+
+// Without absorption, where the floor, of reflectance 0.5, is all that sends light up: L_u is the
+// same at all depths.
+TEST(LightMeter, ReadsWhatLeavesTheWater) {
+    SceneDesc desc = clear_water();
+    desc.water.absorption = PerBand{0, 0, 0};
+    const double angle = 0.9, n = 1.34;
+    LampDesc sun;
+    sun.name = "sun";
+    sun.direction = {std::sin(angle), std::cos(angle), 0};
+    sun.sun = SunDesc{.surface = *desc.water.surface};
+    sun.intensity = PerBand{1, 2, 0};
+    sun.fixed_to_camera = false;
+    desc.lamps = {sun};
+    Renderer renderer;
+    renderer.set_scene(SceneDesc(desc));
+    const auto leaving = LightMeter(renderer.assemble()).read_water_leaving({0.3, 3, 0.2}, 16384);
+    ASSERT_TRUE(leaving);
+    EXPECT_NEAR(leaving->irradiance[0], std::cos(angle), 1e-12);
+    EXPECT_NEAR(leaving->irradiance[1], 2 * std::cos(angle), 1e-12);
+    EXPECT_EQ(leaving->reflectance.mean[2], 0);
+    // Diffuse light from below is reflected by k_internal, as above.
+    constexpr double k_internal = 0.480;
+    const double radiance =
+        0.5 / pi * fresnel_by_angles(angle, 1, n).mean() * std::cos(angle) / (1 - 0.5 * k_internal);
+    const double leaves = (1 - std::pow((n - 1) / (n + 1), 2)) / (n * n);
+    EXPECT_NEAR(leaving->radiance.mean[0] / (leaves * radiance), 1,
+                0.005 + 3 * leaving->radiance.error[0] / leaving->radiance.mean[0]);
+    EXPECT_NEAR(leaving->reflectance.mean[1], leaving->reflectance.mean[0],
+                0.02 * leaving->reflectance.mean[0]);
+    EXPECT_LT(leaving->radiance.error[0], 0.01 * leaving->radiance.mean[0]);
+    // Without light from the air, or an index, there is no such reflectance.
+    desc.lamps.clear();
+    renderer.set_scene(SceneDesc(desc));
+    EXPECT_FALSE(LightMeter(renderer.assemble()).read_water_leaving({0.3, 3, 0.2}, 16));
+}
+
+// All of the sky's irradiance, from all its directions.
+TEST(LightMeter, KnowsWhatTheSkySendsToTheSurface) {
+    SceneDesc desc = clear_water();
+    SkyDesc sky;
+    sky.irradiance = PerBand{3, 2, 1};
+    sky.samples = 1024;
+    sky.where = "test";
+    LampDesc lamp;
+    lamp.name = "sky";
+    lamp.sky = std::make_shared<const SkyDesc>(sky);
+    lamp.direction = -desc.water.surface->normal;
+    lamp.sun = SunDesc{.surface = *desc.water.surface};
+    lamp.intensity = PerBand(3, 0.0);
+    lamp.fixed_to_camera = false;
+    desc.lamps = {lamp};
+    Renderer renderer;
+    renderer.set_scene(SceneDesc(desc));
+    const auto leaving = LightMeter(renderer.assemble()).read_water_leaving({0.3, 3, 0.2}, 16);
+    ASSERT_TRUE(leaving);
+    // 1024 directions stand for it.
+    EXPECT_NEAR(leaving->irradiance[0], 3, 0.03);
+    EXPECT_NEAR(leaving->irradiance[2], 1, 0.01);
 }
 
 TEST(LightMeter, ReadsALampByItsDistance) {
