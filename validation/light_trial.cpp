@@ -53,7 +53,7 @@ SceneDesc scene_of(const LampTableRow& row) {
     return desc;
 }
 
-void compare_row(const LampTableRow& row, LightValidation& result) {
+std::vector<PixelResult> rounds_of(const LampTableRow& row) {
     Renderer renderer;
     renderer.set_scene(scene_of(row));
     const LightTransport transport = renderer.make_transport();
@@ -64,6 +64,15 @@ void compare_row(const LampTableRow& row, LightValidation& result) {
         paths.render(
             0, 0, {static_cast<int>(i), k_paths_of_row_round}, [](int) {}, rounds[i]);
     });
+    return rounds;
+}
+
+double all_orders(const PixelResult& round) {
+    return round.backscatter[0] + round.multiple_volume[0];
+}
+
+void compare_row(const LampTableRow& row, LightValidation& result) {
+    const std::vector<PixelResult> rounds = rounds_of(row);
     const auto compare = [&](const std::string& what, double truth, double most_error,
                              const auto& light_of) {
         LightMean mean;
@@ -84,9 +93,7 @@ void compare_row(const LampTableRow& row, LightValidation& result) {
                 [n](const PixelResult& round) { return round.orders[n][0]; });
         before = order;
     }
-    compare(
-        "all orders", row.total - k_lacking * row.total, k_most_error_of_sum,
-        [](const PixelResult& round) { return round.backscatter[0] + round.multiple_volume[0]; });
+    compare("all orders", row.total - k_lacking * row.total, k_most_error_of_sum, all_orders);
 }
 
 // One pixel is drawn from each cell of a lattice over the image.
@@ -313,6 +320,13 @@ class AllLightTrial {
 
 std::span<const LampTableRow> lamp_table() {
     return k_table;
+}
+
+LightMean scattered_around_lamp(double distance, double angle) {
+    LightMean mean;
+    for (const PixelResult& round : rounds_of({.distance = distance, .angle = angle}))
+        mean.add(all_orders(round));
+    return mean;
 }
 
 LightValidation validate_by_table(std::span<const LampTableRow> table,

@@ -46,6 +46,10 @@ struct LampTableRow {
 /// quadrature, converged to 1e-6.
 std::span<const LampTableRow> lamp_table();
 
+/// The radiance of scattered light [W m^-2 sr^-1] at `distance` [m] and `angle` [degrees], as
+/// LampTableRow has them, by light paths: the mean of 32 rounds.
+LightMean scattered_around_lamp(double distance, double angle);
+
 /// As validate_by_table in validation.h, with these rows.
 LightValidation validate_by_table(std::span<const LampTableRow> table,
                                   const ValidationOptions& options);

@@ -6,33 +6,35 @@
 #include <cmath>
 #include <map>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "camera/camera.h"
-#include "core/base/csv_table.h"
-#include "core/base/error.h"
 #include "core/scene/scene_desc.h"
 #include "media/water/phase_functions.h"
+#include "media/water/species.h"
+#include "media/water/water_types.h"
 #include "render/measures/light_meter.h"
 #include "render/renderer.h"
+#include "validation/light_trial.h"
 
 namespace uw {
 
 bool PublishedFigure::passed() const {
-    const double allowed = tolerance + 2 * error;
-    return is_bound ? difference() <= allowed : std::abs(difference()) <= allowed;
+    return is_bound ? difference() <= allowed() : std::abs(difference()) <= allowed();
 }
 
-namespace {
+bool PublishedComparison::passed() const {
+    return std::ranges::all_of(figures, &PublishedFigure::passed);
+}
 
-CsvTable table_called(std::string_view name) {
+CsvTable published_table(std::string_view name) {
     for (const PublishedTable& table : published_tables())
         if (table.name == name) return CsvTable(table.text, std::string(name));
     throw std::logic_error("no such table of published figures: " + std::string(name));
 }
+
+namespace {
 
 // Canonical problems (Mobley et al. 1993). Attenuation is 1/m, so that depths are optical depths.
 // Water without end below, or a floor at 5 m.
@@ -48,13 +50,13 @@ water:
   scattering: {{b: [{scattering}], phase: {{type: hg, g: 0.9}}}}
   surface: {{height: 0, n: 1.34}}
 {floor}
-lamps: [{{name: sun, type: sun, direction: [{across}, -0.5, 0], irradiance: [1]}}]
+lamps: [{{name: sun, type: sun, direction: [{across}, {down}, 0], irradiance: [1]}}]
 render: {{integrator: path}}
 )";
 
 std::shared_ptr<const PhaseFunction> canonical_phase(int problem) {
     if (problem != 1) {
-        const CsvTable table = table_called("mobley1993_table2_phase.csv");
+        const CsvTable table = published_table("mobley1993_table2_phase.csv");
         return std::make_shared<TabulatedPhase>(table.curve("angle_deg", "phase"),
                                                 "Mobley et al. 1993, table 2");
     }
@@ -70,14 +72,16 @@ std::shared_ptr<const PhaseFunction> canonical_phase(int problem) {
 /// A problem's water, lit by its sun.
 class CanonicalWater {
   public:
-    CanonicalWater(int problem, double albedo) {
+    /// `sun_angle`: of the sun in the air, from the zenith [degrees].
+    CanonicalWater(int problem, double albedo, double sun_angle) {
         const std::string floor =
             problem == 6 ? "geometry: [{type: plane, point: [0, -5, 0], normal: [0, 1, 0], "
                            "reflectance: [0.5]}]"
                          : "";
         const std::string text = fmt::format(
             k_canonical_water, fmt::arg("absorption", 1 - albedo), fmt::arg("scattering", albedo),
-            fmt::arg("floor", floor), fmt::arg("across", std::numbers::sqrt3 / 2));
+            fmt::arg("floor", floor), fmt::arg("across", std::sin(sun_angle * k_degree)),
+            fmt::arg("down", -std::cos(sun_angle * k_degree)));
         renderer_.set_scene(ImageScene(read_scene_text(text, "canonical.yaml")));
         renderer_.edit([&](AssembledScene& scene) {
             scene.water.medium.phase_functions.front() = canonical_phase(problem);
@@ -103,8 +107,9 @@ MeteredSpectrum quantity_of(const MeterReading& reading, const std::string& name
 }
 
 void append_canonical(const PublishedOptions& options, std::vector<PublishedFigure>& figures) {
-    const CsvTable table = table_called("mobley1993_means.csv");
+    const CsvTable table = published_table("mobley1993_means.csv");
     constexpr double k_of_irradiance = 0.015, k_rounding = 0.005;  // three digits are printed
+    constexpr double k_sun_angle = 60;
     const std::vector<double> problems = table.numbers("problem"),
                               albedos = table.numbers("omega0"), depths = table.numbers("tau"),
                               means = table.numbers("mean"), spreads = table.numbers("cv");
@@ -116,7 +121,7 @@ void append_canonical(const PublishedOptions& options, std::vector<PublishedFigu
         if (!options.only.empty() && options.only != name) continue;
         if (!water || problems[row] != problems[row - 1] || albedos[row] != albedos[row - 1]) {
             options.say(fmt::format("{}, albedo {:g}", name, albedos[row]));
-            water.emplace(static_cast<int>(problems[row]), albedos[row]);
+            water.emplace(static_cast<int>(problems[row]), albedos[row], k_sun_angle);
             readings.clear();
         }
         const double depth = depths[row];
@@ -132,76 +137,121 @@ void append_canonical(const PublishedOptions& options, std::vector<PublishedFigu
         figure.error = value.mean[0] > 0 ? value.error[0] / value.mean[0] : 0;
         figure.tolerance = std::max(k_of_irradiance, 2 * figure.spread);
         if (quantities[row] != "Ed") figure.tolerance += k_rounding;
+        figure.place = {fmt::format("{}, albedo {:g}", name, albedos[row]), quantities[row],
+                        "optical depth", depth};
         figures.push_back(std::move(figure));
     }
 }
 
-/// Photographs through a port, and the camera that took them.
-struct Photographs {
-    const char* table;
-    const char* source;
-    const char* camera;
-    double published;  // RMS of an independent model of the port [px]
-};
+void append_photographs(PublishedComparison& comparison) {
+    constexpr double k_rounding = 0.002;  // the published are rounded to their third digit
+    comparison.photographs = photographs_through_ports();
+    for (const PortPhotographs& photographs : comparison.photographs) {
+        const std::size_t corners = photographs.port.size();
+        PublishedFigure port;
+        port.source = photographs.source;
+        port.quantity = fmt::format("RMS of {} corners [px]", corners);
+        port.published = photographs.published_port;
+        port.ours = rms_of(photographs.port);
+        port.tolerance = k_rounding;
+        port.is_bound = true;
+        PublishedFigure plain;
+        plain.source = photographs.source;
+        plain.quantity = "the same without the port [px]";
+        plain.published = photographs.published_plain;
+        plain.ours = rms_of(photographs.plain);
+        plain.tolerance = photographs.plain_rounding / photographs.published_plain;
+        comparison.figures.push_back(std::move(port));
+        comparison.figures.push_back(std::move(plain));
+    }
+}
 
-constexpr Photographs k_photographs[] = {
-    {"flat_port.csv", "14 photographs through a flat port",
-     "{resolution: [648, 486], intrinsics: {fx: 704.2503362080547, fy: 704.5253520972772, cx: "
-     "311.07539864073345, cy: 231.63444961832204}, distortion: {model: brown-conrady, k: "
-     "[-0.16466655995965362, 0.3639292712426501, 0], p: [-0.0035347701314374052, "
-     "0.0017529132113182353]}, port: {type: flat, normal: [0.03187842988317765, "
-     "0.007419777520423672, 0.999464212770888], distance: 0.0014159163813140608, thickness: 0.01, "
-     "n_air: 1.0, n_glass: 1.49, n_water: 1.333}}",
-     0.357},
-    {"dome_port.csv", "74 photographs through a dome",
-     "{resolution: [1440, 1080], intrinsics: {fx: 2415.732657933524, fy: 2420.953074246, cx: "
-     "752.7733815206981, cy: 571.8066981186872}, distortion: {model: brown-conrady, k: "
-     "[-0.36315848398496675, 0.06811987606712908, 1.1730456449148083], p: "
-     "[0.0009552456724762491, 0.0006011333369216497]}, port: {type: dome, center: "
-     "[0.0010739276438524533, -0.0014321366132178607, -0.005296524028375461], radius: 0.043552, "
-     "thickness: 0.0037499999999999964, n_air: 1.0, n_glass: 1.495, n_water: 1.333}}",
-     0.228},
-    {"tank.csv", "a photograph through a tank of 256 mm",
-     "{resolution: [3456, 2304], intrinsics: {fx: 2855.7123372189926, fy: 2856.713502076052, cx: "
-     "1783.0502357964347, cy: 1171.8751102388067}, port: {type: flat, normal: "
-     "[-0.19836545283469129, -0.08802350151204377, 1], distance: 0.02, thickness: "
-     "0.2556931817358324, n_air: 1.0, n_glass: 1.33, n_water: 1.0}}",
-     0.465},
-};
-
-void append_photographs(std::vector<PublishedFigure>& figures) {
-    for (const Photographs& photographs : k_photographs) {
-        const SceneDesc scene = read_scene_text(
-            fmt::format("uwvdb: 1\ncamera: {}\n", photographs.camera), "photographs.yaml");
-        const Camera camera(scene.camera);
-        const CsvTable table = table_called(photographs.table);
-        const std::vector<double> x = table.numbers("x"), y = table.numbers("y"),
-                                  z = table.numbers("z"), u = table.numbers("u"),
-                                  v = table.numbers("v");
-        double squares = 0;
-        for (std::size_t row = 0; row < table.row_count(); ++row) {
-            const auto seen = camera.project({x[row], y[row], z[row]});
-            if (!seen) throw std::logic_error("a corner that was photographed cannot be seen");
-            squares += std::pow(seen->x - u[row], 2) + std::pow(seen->y - v[row], 2);
+// K of the irradiance between two depths so great that only the slowest part of the light is left,
+// below a sun at the zenith.
+void append_asymptotic(const PublishedOptions& options, std::vector<PublishedFigure>& figures) {
+    constexpr double k_depths[] = {15, 27};  // optical
+    const CsvTable table = published_table("mobley1993_asymptotic.csv");
+    const std::vector<double> albedos = table.numbers("omega0"), least = table.numbers("least"),
+                              greatest = table.numbers("greatest");
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+        options.say(fmt::format("asymptotic K, albedo {:g}", albedos[row]));
+        const CanonicalWater water(2, albedos[row], 0);
+        double logarithm = 0, variance = 0;
+        for (const double depth : k_depths) {
+            const MeteredSpectrum down = water.read(depth, options.rays).down;
+            logarithm += (depth == k_depths[0] ? 1 : -1) * std::log(down.mean[0]);
+            variance += std::pow(down.error[0] / down.mean[0], 2);
         }
         PublishedFigure figure;
-        figure.source = photographs.source;
-        figure.quantity = fmt::format("RMS of {} corners [px]", table.row_count());
-        figure.published = photographs.published;
-        figure.ours = std::sqrt(squares / static_cast<double>(table.row_count()));
-        figure.tolerance = 0.002;  // the published are rounded to their third digit
-        figure.is_bound = true;
+        figure.source = "Mobley et al. 1993, problem 2";
+        figure.quantity = fmt::format("asymptotic K, albedo {:g} [c]", albedos[row]);
+        figure.published = (least[row] + greatest[row]) / 2;
+        figure.spread = greatest[row] / figure.published - 1;
+        figure.ours = logarithm / (k_depths[1] - k_depths[0]);
+        figure.error = std::sqrt(variance) / logarithm;
+        figure.tolerance = figure.spread;
+        figures.push_back(std::move(figure));
+    }
+}
+
+void append_petzold(std::vector<PublishedFigure>& figures) {
+    constexpr double k_wavelength = 514, k_salinity = 35;
+    const CsvTable table = published_table("petzold1972_scattering.csv");
+    const std::vector<std::string> species = table.text("species");
+    const std::vector<double> scattering = table.numbers("b");
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+        const WaterDesc desc = read_water_overrides(
+            {fmt::format("water={{species: {{x: {{library: {}}}}}}}", species[row])});
+        PublishedFigure figure;
+        figure.source = "Petzold 1972";
+        figure.quantity = fmt::format("b of {} [1/m]", species[row]);
+        figure.published = scattering[row];
+        figure.ours = species_optics(desc.species[0], k_wavelength, desc).scattering +
+                      water_scattering(k_wavelength, k_salinity);
+        // Below 0.1 degrees nothing was measured, and how one extrapolates changes b.
+        figure.tolerance = 0.01;
+        figures.push_back(std::move(figure));
+    }
+}
+
+void append_cycles(const PublishedOptions& options, std::vector<PublishedFigure>& figures) {
+    const CsvTable table = published_table("cycles_point_lamp.csv");
+    const std::vector<double> distances = table.numbers("distance"),
+                              angles = table.numbers("angle"),
+                              radiances = table.numbers("radiance"),
+                              errors = table.numbers("error");
+    options.say("Cycles");
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+        const LightMean ours = scattered_around_lamp(distances[row], angles[row]);
+        PublishedFigure figure;
+        figure.source = "Blender 3.4.1, Cycles";
+        figure.quantity = fmt::format("radiance {:g} m from a lamp, {:g} degrees aside",
+                                      distances[row], angles[row]);
+        figure.published = radiances[row];
+        figure.spread = errors[row];
+        figure.ours = ours.mean();
+        figure.error = ours.error() / ours.mean();
+        // Light leaves our point lamp, but for 0.08 %, from a sphere of 1 mm without scattering.
+        figure.tolerance = 2 * figure.spread + 0.001;
+        figure.place = {"Blender's Cycles: radiance around a lamp", "radiance", "row",
+                        static_cast<double>(row + 1)};
         figures.push_back(std::move(figure));
     }
 }
 
 }  // namespace
 
-std::vector<PublishedFigure> compare_with_published(const PublishedOptions& options) {
-    std::vector<PublishedFigure> figures;
-    append_photographs(figures);
-    append_canonical(options, figures);
-    return figures;
+PublishedComparison compare_with_published(const PublishedOptions& options) {
+    PublishedComparison comparison;
+    const auto wants = [&](const char* part) {
+        return options.only.empty() || options.only == part;
+    };
+    if (wants("photographs")) append_photographs(comparison);
+    append_canonical(options, comparison.figures);
+    if (wants("asymptotic K")) append_asymptotic(options, comparison.figures);
+    if (wants("Petzold")) append_petzold(comparison.figures);
+    if (wants("Cycles")) append_cycles(options, comparison.figures);
+    return comparison;
 }
 
 }  // namespace uw

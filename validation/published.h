@@ -5,40 +5,66 @@
 #include <string_view>
 #include <vector>
 
+#include "core/base/csv_table.h"
+#include "validation/port_photographs.h"
+
 namespace uw {
 
 /// One of the files of assets/published, compiled in: figures that others have published or
-/// measured, with their source in the first lines.
+/// measured, with their source in the first lines; or CITATION.cff.
 struct PublishedTable {
     std::string_view name;
     std::string_view text;
 };
 const std::vector<PublishedTable>& published_tables();
+const std::vector<PublishedTable>& citation_files();
+
+/// The one called `name`; an unknown name is a bug in the program: std::logic_error.
+CsvTable published_table(std::string_view name);
 
 /// A figure that others have published, and ours for the same.
 struct PublishedFigure {
     std::string source;    // "Mobley et al. 1993, problem 2"
-    std::string quantity;  // "Ed at optical depth 5, albedo 0.9"
+    std::string quantity;  // "Ed at depth 5, albedo 0.9"
     double published = 0, ours = 0;
     double error = 0;       // standard error of ours, relative to it; 0: exact
     double spread = 0;      // of those published, relative: of several models or measurements
     double tolerance = 0;   // of ours, relative to the published, beside two standard errors
     bool is_bound = false;  // ours is to be no greater, rather than the same
 
+    /// Where plots show it: in a panel, as part of a curve, at a place along the horizontal axis.
+    /// None shows it if `panel` is empty.
+    struct Place {
+        std::string panel, curve, axis;
+        double x = 0;
+    };
+    Place place{};
+
     /// Ours against the published, relative.
     double difference() const { return ours / published - 1; }
+    /// The largest difference, relative, with which it passes.
+    double allowed() const { return tolerance + 2 * error; }
     bool passed() const;
 };
 
 struct PublishedOptions {
     int rays = 65536;  // from each meter (LightMeter)
-    /// Problems by these names alone, such as "problem 2"; empty: all.
+    /// One part alone: "photographs", "problem 1" and so on, "asymptotic K", "Petzold", "Cycles";
+    /// empty: all.
     std::string only;
     std::function<void(const std::string&)> say = [](const std::string&) {};
 };
 
-/// Computes what others have published: the canonical problems of ocean optics, and where real
-/// cameras behind ports have seen corners of boards. Throws Interrupted.
-std::vector<PublishedFigure> compare_with_published(const PublishedOptions& options);
+struct PublishedComparison {
+    std::vector<PublishedFigure> figures;
+    std::vector<PortPhotographs> photographs;
+
+    bool passed() const;
+};
+
+/// Computes what others have published: where real cameras behind ports have seen corners of
+/// boards, the canonical problems of ocean optics, the scattering of measured waters, and what
+/// Blender's Cycles makes of a lamp in water. Throws Interrupted.
+PublishedComparison compare_with_published(const PublishedOptions& options);
 
 }  // namespace uw

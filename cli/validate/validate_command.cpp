@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <ostream>
@@ -12,7 +14,7 @@
 
 #include "cli/console.h"
 #include "cli/process.h"
-#include "cli/report.h"
+#include "cli/validate/published_report.h"
 #include "cli/validate/validation_report.h"
 #include "core/base/error.h"
 #include "core/base/output_files.h"
@@ -63,30 +65,28 @@ Options validate_options(ValidateArguments& a) {
 
 namespace {
 
-bool run_published(const ValidateArguments& a, std::ostream& out) {
-    if (!a.scene.empty() || !a.report.empty())
-        throw UsageError(
-            "--published: has its own scenes, and a table alone; leave out SCENE and "
-            "--report");
+/// Writes the page unless there is no `file` for it.
+void write_report(const std::filesystem::path& file, const std::function<std::string()>& page,
+                  bool quiet) {
+    if (file.empty()) return;
+    begin_orderly_stop();  // or a temporary file might stay
+    const StopScope scope(stop_flag());
+    TextFiles files;
+    files.add(file, page());
+    files.commit(quiet);
+}
+
+bool run_published(const ValidateArguments& a, bool colour, std::ostream& out) {
+    if (!a.scene.empty()) throw UsageError("--published: has its own scenes; leave out SCENE");
     PublishedOptions options;
     if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
-    const std::vector<PublishedFigure> figures = compare_with_published(options);
-    std::vector<std::vector<std::string>> rows{
-        {"source", "quantity", "published", "spread", "ours", "±", "difference", ""}};
-    bool passed = true;
-    for (const PublishedFigure& figure : figures) {
-        passed = passed && figure.passed();
-        rows.push_back({figure.source, figure.quantity, fmt::format("{:.4g}", figure.published),
-                        figure.spread > 0 ? fmt::format("{:.1f} %", 100 * figure.spread) : "",
-                        fmt::format("{:.4g}", figure.ours),
-                        figure.error > 0 ? fmt::format("{:.1f} %", 100 * figure.error) : "",
-                        fmt::format("{:+.2f} %", 100 * figure.difference()),
-                        figure.passed() ? "" : "FAILED"});
-    }
-    for (const std::string& row : aligned_rows(rows, 2)) out << row << '\n';
-    out << (passed ? "validation passed" : "validation FAILED") << '\n';
+    const PublishedComparison comparison = compare_with_published(options);
+    out << published_text(comparison, colour);
+    write_report(
+        a.report, [&] { return published_page(comparison); }, a.quiet);
+    out << (comparison.passed() ? "validation passed" : "validation FAILED") << '\n';
     if (!out.flush()) throw IoError("standard output: cannot write; is the disk full?");
-    return passed;
+    return comparison.passed();
 }
 
 }  // namespace
@@ -95,8 +95,8 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out) {
     const ThreadLimit limit(a.threads);
     if (a.scene.empty() && !a.overrides.empty())
         throw UsageError("--set: the built-in suite has no scene file to change; name a scene");
-    if (a.published) return run_published(a, out);
     if (!a.report.empty()) const AtomicFile probe(a.report);
+    if (a.published) return run_published(a, colour, out);
     const ValidationSuite suite;
     std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();
     std::vector<std::pair<std::string, SceneDesc>> all_light = suite.all_light();
@@ -129,13 +129,8 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out) {
     };
     if (a.scene.empty()) keep(validate_by_table(options));
     for (auto& [name, desc] : all_light) keep(validate_all_light(std::move(desc), name, options));
-    if (!a.report.empty()) {
-        begin_orderly_stop();  // or a temporary file might stay
-        const StopScope scope(stop_flag());
-        TextFiles files;
-        files.add(a.report, validation_page(results, lights));
-        files.commit(a.quiet);
-    }
+    write_report(
+        a.report, [&] { return validation_page(results, lights); }, a.quiet);
     std::ptrdiff_t uncompared = 0;
     for (const SceneValidation& scene : results)
         uncompared += std::ranges::count(scene.checks, false, &Check::is_compared);

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cli/validate/published_report.h"
+
 namespace uw::test {
 namespace {
 
@@ -79,6 +81,37 @@ TEST(ValidationReport, ShowsTheLightOnOnePage) {
     for (const char* part : {"scene, all light: <span class=passed>", "data:image/png;base64,",
                              "<svg", "<td>multiple.volume</td>"})
         EXPECT_NE(html.find(part), std::string::npos) << part;
+}
+
+PublishedComparison published_with(double ours) {
+    PublishedFigure light{"Model & others", "Ed < at depth 5", 2, ours, 0.001, 0.02, 0.015};
+    light.place = {"problem 9", "Ed", "optical depth", 5};
+    PortPhotographs set;
+    set.source = "a photograph";
+    set.published_plain = 2;
+    set.published_port = 1;
+    set.port = {{1, 0}, {0, -1}};
+    set.plain = {{2, 0}, {0, -2}};
+    return {{light}, {set}};
+}
+
+TEST(PublishedReport, IsAPageToCite) {
+    const std::string html = published_page(published_with(2.01));
+    for (const char* part :
+         {"1 figures", "<span class=passed>passed</span>, 1 of 1", "<td>Model &amp; others</td>",
+          "<td>Ed &lt; at depth 5</td>", "+0.50 %", "±1.70 %", "problem 9", "optical depth", "<svg",
+          "<td class=n>2</td><td class=n>2</td><td class=n>1</td><td class=n>1</td>", "cff-version",
+          "doi:10.1364/AO.32.007484"})
+        EXPECT_NE(html.find(part), std::string::npos) << part;
+    EXPECT_EQ(html, published_page(published_with(2.01)));
+    EXPECT_NE(published_page(published_with(3)).find("FAILED"), std::string::npos);
+}
+
+TEST(PublishedReport, PrintsATable) {
+    EXPECT_NE(published_text(published_with(2.01), false).find("+0.50 %  ±1.70 %  passed"),
+              std::string::npos)
+        << published_text(published_with(2.01), false);
+    EXPECT_NE(published_text(published_with(3), true).find("\033[31m"), std::string::npos);
 }
 
 }  // namespace
