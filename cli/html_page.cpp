@@ -8,7 +8,6 @@
 #include <iterator>
 
 #include "cli/report.h"
-#include "cli/svg_plot.h"
 #include "core/image/image_file.h"
 
 namespace uw {
@@ -25,7 +24,9 @@ constexpr const char* k_page_style =
     "tabular-nums}.failed{color:#c00;font-weight:bold}.passed{color:#070}figure{display:"
     "inline-block;margin:0 1em 1em "
     "0;vertical-align:top}figcaption{font-size:13px;max-width:288px}img{image-"
-    "rendering:pixelated;display:block;border:1px solid #ccc}svg{max-width:100%;height:auto}"
+    "rendering:pixelated;display:block;border:1px solid "
+    "#ccc}img.plot{border:0;max-width:100%;image-rendering:auto}"
+    "th.n{text-align:right}"
     "pre{white-space:pre-wrap;font-size:13px;background:#f6f6f6;padding:.6em .8em}";
 
 std::string base64(const std::string& bytes) {
@@ -69,7 +70,9 @@ std::string ReportTable::text(bool colour) const {
 
 std::string ReportTable::html() const {
     std::string html = "<table><tr>";
-    for (const std::string& heading : headings) html += "<th>" + xml_escaped(heading) + "</th>";
+    for (std::size_t i = 0; i < headings.size(); ++i)
+        html += (i < names ? "<th>" : "<th class=n>") + xml_escaped(headings[i]) + "</th>";
+    if (!rows.empty() && rows.front().verdict != Verdict::none) html += "<th></th>";
     html += "</tr>\n";
     for (const Row& row : rows) {
         html += "<tr>";
@@ -94,6 +97,12 @@ std::string HtmlPictures::figure(const Preview& picture, const std::string& capt
         "<figcaption>{}</figcaption></figure>\n",
         k_picture_width, k_picture_width * picture.height() / std::max(1, picture.width()),
         xml_escaped(caption), base64(bytes), xml_escaped(caption));
+}
+
+std::string plot_html(const PlotFigure& plot) {
+    return fmt::format("<p><img class=plot alt=\"{}\" src=\"data:image/svg+xml;base64,{}\"></p>\n",
+                       xml_escaped(plot.title.empty() ? "plot" : plot.title),
+                       base64(svg_document(plot)));
 }
 
 std::string html_page(const std::string& title, const std::string& body) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/svg_plot.h"
 #include "core/base/output_files.h"
 #include "core/image/pixel_image.h"
 
@@ -42,6 +43,9 @@ class HtmlPictures {
   private:
     ScratchFolder folder_;
 };
+
+/// A plot as an image of its own, so that nothing in it has the same name as in another.
+std::string plot_html(const PlotFigure& plot);
 
 /// One self-contained page with this title, which is its first heading, too. `body` is HTML. The
 /// same arguments give the same bytes.

@@ -12,7 +12,7 @@
 #include "core/base/csv_table.h"
 #include "core/paths/lattice_fit.h"
 #include "core/scene/scene_desc.h"
-#include "validation/published.h"
+#include "validation/published_tables.h"
 
 namespace uw {
 
@@ -21,12 +21,13 @@ namespace {
 struct PhotographSet {
     const char* table;
     const char* source;
+    const char* name;
     const char* camera;
     double port, plain, plain_rounding, air;  // [px]
 };
 
 constexpr PhotographSet k_sets[] = {
-    {"flat_port.csv", "14 photographs through a flat port",
+    {"flat_port.csv", "14 photographs through a flat port", "flat port",
      "{resolution: [648, 486], intrinsics: {fx: 704.2503362080547, fy: 704.5253520972772, cx: "
      "311.07539864073345, cy: 231.63444961832204}, distortion: {model: brown-conrady, k: "
      "[-0.16466655995965362, 0.3639292712426501, 0], p: [-0.0035347701314374052, "
@@ -34,7 +35,7 @@ constexpr PhotographSet k_sets[] = {
      "0.007419777520423672, 0.999464212770888], distance: 0.0014159163813140608, thickness: 0.01, "
      "n_air: 1.0, n_glass: 1.49, n_water: 1.333}}",
      0.357, 2.63, 0.005, 0.389},
-    {"dome_port.csv", "74 photographs through a dome",
+    {"dome_port.csv", "74 photographs through a dome", "dome",
      "{resolution: [1440, 1080], intrinsics: {fx: 2415.732657933524, fy: 2420.953074246, cx: "
      "752.7733815206981, cy: 571.8066981186872}, distortion: {model: brown-conrady, k: "
      "[-0.36315848398496675, 0.06811987606712908, 1.1730456449148083], p: "
@@ -42,7 +43,7 @@ constexpr PhotographSet k_sets[] = {
      "[0.0010739276438524533, -0.0014321366132178607, -0.005296524028375461], radius: 0.043552, "
      "thickness: 0.0037499999999999964, n_air: 1.0, n_glass: 1.495, n_water: 1.333}}",
      0.228, 0.271, 0.0005, 0.244},
-    {"tank.csv", "a photograph through a tank of 256 mm",
+    {"tank.csv", "a photograph through a tank of 256 mm", "tank of water",
      "{resolution: [3456, 2304], intrinsics: {fx: 2855.7123372189926, fy: 2856.713502076052, cx: "
      "1783.0502357964347, cy: 1171.8751102388067}, port: {type: flat, normal: "
      "[-0.19836545283469129, -0.08802350151204377, 1], distance: 0.02, thickness: "
@@ -161,7 +162,7 @@ std::vector<PortPhotographs> photographs_through_ports() {
         }
         PortPhotographs& result = all.emplace_back();
         result.source = set.source;
-        result.table = set.table;
+        result.port_name = set.name;
         result.published_port = set.port;
         result.published_plain = set.plain;
         result.plain_rounding = set.plain_rounding;

@@ -10,9 +10,8 @@ namespace uw {
 /// Corners of boards in photographs through a port: how far from where they were found in the
 /// photographs the camera model has them [px]. All lists are in the order of the corners.
 struct PortPhotographs {
-    std::string source;  // "14 photographs through a flat port"
-    /// Which table of published_tables() has them, and with which port.
-    std::string table;
+    std::string source;     // "14 photographs through a flat port"
+    std::string port_name;  // "flat port"
     /// Root mean squares that an independent model of camera and ports found for the same corners
     /// [px]: with the port; with a plain lens in its place, the boards posed anew; and of
     /// photographs in air, the noise of corners (0: there are none).

@@ -7,7 +7,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "core/scene/scene_desc.h"
@@ -17,6 +16,7 @@
 #include "render/measures/light_meter.h"
 #include "render/renderer.h"
 #include "validation/light_trial.h"
+#include "validation/published_tables.h"
 
 namespace uw {
 
@@ -26,12 +26,6 @@ bool PublishedFigure::passed() const {
 
 bool PublishedComparison::passed() const {
     return std::ranges::all_of(figures, &PublishedFigure::passed);
-}
-
-CsvTable published_table(std::string_view name) {
-    for (const PublishedTable& table : published_tables())
-        if (table.name == name) return CsvTable(table.text, std::string(name));
-    throw std::logic_error("no such table of published figures: " + std::string(name));
 }
 
 namespace {
@@ -233,8 +227,8 @@ void append_cycles(const PublishedOptions& options, std::vector<PublishedFigure>
         figure.error = ours.error() / ours.mean();
         // Light leaves our point lamp, but for 0.08 %, from a sphere of 1 mm without scattering.
         figure.tolerance = 2 * figure.spread + 0.001;
-        figure.place = {"Blender's Cycles: radiance around a lamp", "radiance", "row",
-                        static_cast<double>(row + 1)};
+        figure.place = {"Blender's Cycles: radiance around a lamp",
+                        fmt::format("{:g} m", distances[row]), "degrees aside", angles[row]};
         figures.push_back(std::move(figure));
     }
 }

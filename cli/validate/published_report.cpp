@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "cli/html_page.h"
 #include "cli/svg_plot.h"
 #include "core/base/version.h"
+#include "validation/published_tables.h"
 
 namespace uw {
 
@@ -55,7 +57,7 @@ std::string on_photographs(const std::vector<PortPhotographs>& sets) {
               px(rms_of(set.plain)), px(set.published_port), px(rms_of(set.port)),
               px(set.published_air)}});
         PlotPanel panel;
-        panel.title = set.source;
+        panel.title = set.port_name;
         panel.x.label = "to the right [px]";
         panel.y.label = "down [px]";
         double farthest = 0;
@@ -86,86 +88,83 @@ std::string on_photographs(const std::vector<PortPhotographs>& sets) {
            "port's place, and the boards of each photograph are moved to fit best; the published "
            "figure is the independent model's for the same. What photographs in air leave is the "
            "noise of the corners.</p>\n" +
-           table.html() + svg_document(figure);
+           table.html() + plot_html(figure);
 }
 
 constexpr std::array k_curve_colours{plot_colour::k_blue, plot_colour::k_orange,
                                      plot_colour::k_green, plot_colour::k_purple};
 
-/// Two panels for what figures have as one: values, and differences with all that is allowed.
-class PlacePanels {
-  public:
-    explicit PlacePanels(const PublishedFigure& first) {
-        values_.title = first.place.panel;
-        values_.x.label = differences_.x.label = first.place.axis;
-        values_.y.label = "published (line), ours (dots)";
-        values_.y.request.scale = AxisScale::log;
-        differences_.title = "ours - published, ± 2 errors";
-        differences_.y.label = "%";
-        differences_.curves.push_back({"allowed", {}, {}, "#cccccc", "", 7});
-    }
+void append_point(PlotCurve& curve, double x, double y) {
+    curve.x.push_back(x);
+    curve.y.push_back(y);
+}
 
-    void add(const PublishedFigure& figure) {
-        const std::size_t curve = index_of(figure.place.curve);
-        const double x = figure.place.x;
-        append(values_.curves[2 * curve], x, figure.published);
-        append(values_.curves[2 * curve + 1], x, figure.ours);
-        // Side by side, as far as three fit between neighbours.
-        const double beside = x + 0.2 * (static_cast<double>(curve) - 1);
-        append_bar(differences_.curves[0], beside, 0, 100 * figure.tolerance);
-        append(differences_.curves[1 + 2 * curve], beside, 100 * figure.difference());
-        append_bar(differences_.curves[2 + 2 * curve], beside, 100 * figure.difference(),
-                   200 * figure.error);
-    }
+void append_bar(PlotCurve& curve, double x, double middle, double half) {
+    append_point(curve, x, middle - half);
+    append_point(curve, x, middle + half);
+    append_point(curve, x, std::numeric_limits<double>::quiet_NaN());
+}
 
-    const PlotPanel& values() const { return values_; }
-    const PlotPanel& differences() const { return differences_; }
-
-  private:
-    static void append(PlotCurve& curve, double x, double y) {
-        curve.x.push_back(x);
-        curve.y.push_back(y);
-    }
-
-    static void append_bar(PlotCurve& curve, double x, double middle, double half) {
-        append(curve, x, middle - half);
-        append(curve, x, middle + half);
-        append(curve, x, std::numeric_limits<double>::quiet_NaN());
-    }
-
-    std::size_t index_of(const std::string& name) {
-        const auto found = std::ranges::find(names_, name);
-        const auto index = static_cast<std::size_t>(found - names_.begin());
-        if (found != names_.end()) return index;
-        names_.push_back(name);
-        const char* colour = k_curve_colours[index % k_curve_colours.size()];
-        values_.curves.push_back({name, {}, {}, colour, "6 3"});
-        values_.curves.push_back({"", {}, {}, colour, "", 0, true});
-        differences_.curves.push_back({name, {}, {}, colour, "", 0, true});
-        differences_.curves.push_back({"", {}, {}, colour, "", 1.5});
-        return index;
-    }
-
-    PlotPanel values_, differences_;
-    std::vector<std::string> names_;
-};
-
-std::string plots_of(const std::vector<PublishedFigure>& figures) {
-    std::vector<std::pair<std::string, PlacePanels>> panels;
+/// Two panels for figures that have one as their place: values, and differences with what is
+/// allowed.
+void append_panels(std::span<const PublishedFigure> figures, std::vector<PlotPanel>& panels) {
+    std::vector<std::string> curves;
+    double least = figures.front().place.x, most = least;
     for (const PublishedFigure& figure : figures) {
-        const std::string& name = figure.place.panel;
-        if (name.empty()) continue;
-        if (panels.empty() || panels.back().first != name)
-            panels.emplace_back(name, PlacePanels(figure));
-        panels.back().second.add(figure);
+        if (std::ranges::find(curves, figure.place.curve) == curves.end())
+            curves.push_back(figure.place.curve);
+        least = std::min(least, figure.place.x);
+        most = std::max(most, figure.place.x);
     }
-    if (panels.empty()) return "";
+    PlotPanel values, differences;
+    for (PlotPanel* panel : {&values, &differences}) {
+        panel->x.label = figures.front().place.axis;
+        panel->x.request.min = least - 1;
+        panel->x.request.max = most + 1;
+    }
+    values.title = figures.front().place.panel;
+    values.y.label = "published (line), ours (dots)";
+    values.y.request.scale = AxisScale::log;
+    differences.title = "ours - published, ± 2 errors";
+    differences.y.label = "%";
+    PlotCurve allowed{"allowed", {}, {}, "#cccccc", "", 7};
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        const char* colour = k_curve_colours[i % k_curve_colours.size()];
+        PlotCurve published{curves[i], {}, {}, colour, "6 3"},
+            ours{"", {}, {}, colour, "", 0, true};
+        PlotCurve points{curves[i], {}, {}, colour, "", 0, true}, bars{"", {}, {}, colour, "", 1.5};
+        // Side by side.
+        const double aside =
+            0.2 * (static_cast<double>(i) - static_cast<double>(curves.size() - 1) / 2);
+        for (const PublishedFigure& figure : figures) {
+            if (figure.place.curve != curves[i]) continue;
+            const double x = figure.place.x, difference = 100 * figure.difference();
+            append_point(published, x, figure.published);
+            append_point(ours, x, figure.ours);
+            append_point(points, x + aside, difference);
+            append_bar(bars, x + aside, difference, 200 * figure.error);
+            append_bar(allowed, x + aside, 0, 100 * figure.tolerance);
+        }
+        values.curves.push_back(std::move(published));
+        values.curves.push_back(std::move(ours));
+        differences.curves.push_back(std::move(points));
+        differences.curves.push_back(std::move(bars));
+    }
+    differences.curves.insert(differences.curves.begin(), std::move(allowed));
+    panels.push_back(std::move(values));
+    panels.push_back(std::move(differences));
+}
+
+std::string plots_of(std::span<const PublishedFigure> figures) {
     PlotFigure plot;
-    for (const auto& [name, pair] : panels) {
-        plot.panels.push_back(pair.values());
-        plot.panels.push_back(pair.differences());
+    while (!figures.empty()) {
+        const std::string& panel = figures.front().place.panel;
+        std::size_t count = 1;
+        while (count < figures.size() && figures[count].place.panel == panel) ++count;
+        if (!panel.empty()) append_panels(figures.first(count), plot.panels);
+        figures = figures.subspan(count);
     }
-    return svg_document(plot);
+    return plot.panels.empty() ? "" : plot_html(plot);
 }
 
 std::string on_light() {
@@ -181,7 +180,9 @@ std::string on_light() {
            "back from it; ± is their standard error. A difference passes within 1.5 % or twice the "
            "spread, half a per cent more where three digits were printed, and two errors of ours. "
            "The "
-           "models average Lu over a polar cap of up to 26°; ours is straight up.</p>\n"
+           "models average Lu over a polar cap of up to 26°; ours is straight up. At optical depth "
+           "10 and albedo 0.2, what travels up comes by rare paths, and our error is "
+           "understated.</p>\n"
            "<p><b>Asymptotic K</b>: the attenuation of Ed between optical depths 15 and 27, where "
            "only the slowest part of the light is left; the published range is that of the models. "
            "<b>Petzold</b>: the library's measured volume scattering functions, integrated. "

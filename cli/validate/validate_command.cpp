@@ -81,7 +81,7 @@ bool run_published(const ValidateArguments& a, bool colour, std::ostream& out) {
     PublishedOptions options;
     if (!a.quiet) options.say = [](const std::string& what) { print_message(what + "\n"); };
     const PublishedComparison comparison = compare_with_published(options);
-    out << published_text(comparison, colour);
+    out << published_text(comparison, colour) << std::flush;
     write_report(
         a.report, [&] { return published_page(comparison); }, a.quiet);
     out << (comparison.passed() ? "validation passed" : "validation FAILED") << '\n';

@@ -88,7 +88,7 @@ ReportTable parts_of(const LightValidation& light) {
 }
 
 // Deviations by check, in standard errors, between the limits.
-std::string deviations_svg(const LightValidation& light) {
+std::string deviations_plot(const LightValidation& light) {
     PlotCurve points{"checks", {}, {}, plot_colour::k_blue, "", 0, true};
     PlotCurve above{"", {}, {}, plot_colour::k_orange, "6 3"}, below = above;
     above.label = fmt::format("limit: {:g}", LightCheck::k_most_errors);
@@ -109,7 +109,7 @@ std::string deviations_svg(const LightValidation& light) {
     PlotFigure figure;
     figure.panels = {panel};
     figure.columns = 1;
-    return svg_document(figure);
+    return plot_html(figure);
 }
 
 std::string light_section(const LightValidation& light, const HtmlPictures& pictures) {
@@ -119,7 +119,7 @@ std::string light_section(const LightValidation& light, const HtmlPictures& pict
     html += fmt::format("{:.1f} s.</p>\n{}", light.seconds, checks_of(light).html());
     if (!light.parts.empty()) html += parts_of(light).html();
     for (const auto& [name, picture] : light.pictures) html += pictures.figure(picture, name);
-    return html + deviations_svg(light);
+    return html + deviations_plot(light);
 }
 
 using Components = std::vector<Component>;
@@ -218,7 +218,7 @@ std::string convergence_plot(const SceneValidation& scene) {
     PlotFigure figure;
     figure.panels = {panel};
     figure.columns = 1;
-    return svg_document(figure);
+    return plot_html(figure);
 }
 
 // One picture per method that has all of `components`; empty if none has.

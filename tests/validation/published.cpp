@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/base/csv_table.h"
 #include "media/water/phase_functions.h"
 #include "validation/light_trial.h"
+#include "validation/published_tables.h"
 
 namespace uw::test {
 namespace {
@@ -44,10 +44,8 @@ TEST(Published, CanonicalProblemOfParticlesHolds) {
 // (Mobley 1994, "Light and Water", section 9.6), by its Legendre moments: the recurrence of L's
 // moments is a symmetric tridiagonal matrix with the greatest eigenvalue 1/k.
 double asymptotic_k(double albedo) {
-    const PublishedTable* table = nullptr;
-    for (const PublishedTable& each : published_tables())
-        if (each.name == "mobley1993_table2_phase.csv") table = &each;
-    const TabulatedPhase phase(CsvTable(table->text, "phase").curve("angle_deg", "phase"), "phase");
+    const CsvTable table = published_table("mobley1993_table2_phase.csv");
+    const TabulatedPhase phase(table.curve("angle_deg", "phase"), "phase");
     constexpr std::size_t k_moments = 200;
     std::vector<double> moments(k_moments);
     // Steps that grow with the angle, as the peak is a tenth of a degree wide.
