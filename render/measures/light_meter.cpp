@@ -281,22 +281,21 @@ MeteredSpectrum over_batches(const std::array<Spectrum, k_batches>& batches) {
     return value;
 }
 
-/// Plane irradiance on calm water, in the air, by the beams that enter it; what is in shadow at `x`
-/// is not left out. What a beam carries through the level in the water, E_n cos, is the share
-/// 1 - R of what it brings in the air.
-Spectrum irradiance_in_air(const AssembledScene& scene, const Point3& x) {
+/// Plane irradiance of the sky and suns on calm water, in the air. What a sun carries through the
+/// level in the water, E_n cos, is the share 1 - R of what it brings in the air.
+Spectrum irradiance_in_air(const AssembledScene& scene) {
     const WaterSurface& surface = *scene.water_surface;
-    Spectrum total{};
-    for (const Lamp& emitter : scene.emitters) {
-        const Sunlight* sun = emitter.sunlight();
-        if (sun == nullptr) continue;
+    Spectrum total = scene.sky ? scene.sky->irradiance() : Spectrum{};
+    for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+        const Sunlight* sun = scene.lamps[i].sunlight();
+        if (sun == nullptr || scene.desc().lamps[i].sky) continue;
         const double cosine = -glm::dot(sun->direction, surface.up());
-        const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine)) * surface.n();
-        if (!(cosine > 0) || !(sine < 1)) continue;
-        const Point3 origin = emitter.origin(x);
-        const double let_in = 1 - surface.reflectance_from_air(std::sqrt(1 - sine * sine));
-        Spectrum light = emitter.axis_intensity();
-        light *= emitter.relative_intensity(x - origin) * cosine / let_in;
+        const double sine_in_air = surface.n() * std::sqrt(std::max(0.0, 1 - cosine * cosine));
+        if (!(cosine > 0) || !(sine_in_air < 1)) continue;
+        const double enters =
+            1 - surface.reflectance_from_air(std::sqrt(1 - sine_in_air * sine_in_air));
+        Spectrum light = scene.lamps[i].axis_intensity();
+        light *= cosine / enters;
         total += light;
     }
     return total;
@@ -367,7 +366,7 @@ std::optional<WaterLeaving> LightMeter::read_water_leaving(const Point3& x, int 
     const Vector3& up = surface->up();
     const Point3 below = x - (surface->height(x) + k_below) * up;
     WaterLeaving result;
-    result.irradiance = irradiance_in_air(scene_, below);
+    result.irradiance = irradiance_in_air(scene_);
     const auto bands = static_cast<std::size_t>(scene_.water.medium.band_count());
     if (std::ranges::all_of(result.irradiance.first(bands), [](double e) { return !(e > 0); }))
         return std::nullopt;
