@@ -32,8 +32,8 @@ Reads the scene's `sensors` in all light, scattered and reflected any number of 
 irradiance that travels down and up (Ed, Eu), scalar irradiance from above and below (Eod, Eou),
 in W/m2, radiance that travels straight up (Lu), in W/(m2 sr), each with its standard error; the
 irradiance reflectance R = Eu/Ed, and between points of a line Kd = -d ln Ed / d depth [1/m]. At
-the water's surface where a sensor begins, if it is calm and lit from the air: the water-leaving
-radiance Lw and the remote-sensing reflectance Rrs = Lw/Ed, both in the air.
+the water's surface where a sensor begins, if it has an index n, is calm and is lit from the air:
+the water-leaving radiance Lw and the remote-sensing reflectance Rrs = Lw/Ed, both in the air.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
 
 struct MeasureArguments {

@@ -25,10 +25,10 @@ struct PortPhotographs {
 /// Root mean square length [px].
 double rms_of(const std::vector<ImagePoint>& residuals);
 
-/// Three sets: through a flat port, through a dome, and through a tank of water. The lens was
-/// calibrated in air, but for the tank; the boards' poses are those of the independent model. The
-/// plain lens has, in each photograph, the rigid motion of all boards that fits best, by
-/// least squares (Levenberg 1944, Marquardt 1963).
+/// Three sets: through a flat port, through a dome, and through a tank of water. The boards'
+/// poses, and the thickness of the tank, are those that the independent model found. The plain lens
+/// has, in each photograph, the rigid motion of all boards that fits best, by least squares
+/// (Levenberg 1944, Marquardt 1963).
 std::vector<PortPhotographs> photographs_through_ports();
 
 }  // namespace uw
