@@ -74,7 +74,7 @@ TEST_F(Validate, WritesOnePageThatNeedsNothingElse) {
     std::ifstream in(arguments_.report);
     const std::string html{std::istreambuf_iterator<char>(in), {}};
     EXPECT_NE(html.find("data:image/png;base64,iVBORw0KGgo"), std::string::npos);
-    EXPECT_NE(html.find("<svg"), std::string::npos);
+    EXPECT_NE(html.find("data:image/svg+xml;base64,"), std::string::npos);
     EXPECT_NE(html.find("Pictures with forward scatter"), std::string::npos);
     EXPECT_EQ(html.find("<script"), std::string::npos);
     EXPECT_EQ(html.find("src=\"http"), std::string::npos);
