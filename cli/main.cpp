@@ -11,6 +11,7 @@
 #include "cli/command.h"
 #include "cli/console.h"
 #include "cli/edit_command.h"
+#include "cli/fit/fit_command.h"
 #include "cli/info/info_command.h"
 #include "cli/measure_command.h"
 #include "cli/points_commands.h"
@@ -41,6 +42,7 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::info_command());
     commands.push_back(uw::water_command());
     commands.push_back(uw::measure_command());
+    commands.push_back(uw::fit_command());
     commands.push_back(uw::sweep_command());
     commands.push_back(uw::validate_command());
     commands.push_back(uw::edit_command());

@@ -21,4 +21,7 @@ string(JOIN ", " UWVDB_LIBRARIES
 if(OpenImageIO_FOUND)
     string(APPEND UWVDB_LIBRARIES ", OpenImageIO ${OpenImageIO_VERSION}")
 endif()
+if(Ceres_FOUND)
+    string(APPEND UWVDB_LIBRARIES ", Ceres ${Ceres_VERSION}")
+endif()
 string(APPEND UWVDB_LIBRARIES ", ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}")

@@ -36,3 +36,16 @@ function(uwvdb_add_module folder)
     set_target_properties(${target}_alone PROPERTIES LINKER_LANGUAGE CXX)
     add_dependencies(uwvdb_modules_alone ${target}_alone)
 endfunction()
+
+# uwvdb_add_loaded_module(NAME COMPONENT LIBRARY SOURCE...): a module that the program loads when it
+# needs it (core/image/loaded_module.h), with a library that would cost time at each start; installed
+# with the component.
+function(uwvdb_add_loaded_module name component library)
+    add_library(${name} MODULE ${ARGN})
+    target_link_libraries(${name} PRIVATE uwvdb_options ${library})
+    set_target_properties(${name} PROPERTIES
+        PREFIX ""
+        LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/uwvdb)
+    install(TARGETS ${name}
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/uwvdb COMPONENT ${component})
+endfunction()

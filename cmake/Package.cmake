@@ -55,6 +55,15 @@ if(TARGET uwvdb_image_formats OR TARGET uwvdb_colour_views)
 PSD, write images in most of these and DPX, by OpenImageIO, and show them through
 the views of OpenColorIO configs.")
 endif()
+if(TARGET uwvdb_fitting)
+    list(APPEND CPACK_COMPONENTS_ALL fitting)
+    set(CPACK_COMPONENT_FITTING_GROUP fitting)
+    set(CPACK_DEBIAN_FITTING_PACKAGE_NAME uwvdb-fitting)
+    string(APPEND CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS ", uwvdb-fitting")
+    set(CPACK_DEBIAN_FITTING_DESCRIPTION
+        "Lets uwvdb find the port, the water and the lamps of a scene from photographs, by
+Ceres and OpenCV.")
+endif()
 if(UWVDB_MKDOCS AND UWVDB_DOXYGEN)
     list(APPEND CPACK_COMPONENTS_ALL site debian_site)
     set(CPACK_COMPONENT_SITE_GROUP site)

@@ -66,6 +66,18 @@ endif()
 # Only for the module colour_views, and for tests.
 pkg_check_modules(OPENCOLORIO IMPORTED_TARGET OpenColorIO)
 
+# Only for the module fitting. OpenCV's CMake package is that of all its modules.
+find_package(Ceres 2.1 QUIET)
+find_path(OPENCV_INCLUDE_DIR opencv2/calib3d.hpp PATH_SUFFIXES opencv4)
+find_library(OPENCV_CALIB3D_LIBRARY opencv_calib3d)
+find_library(OPENCV_CORE_LIBRARY opencv_core)
+if(Ceres_FOUND AND OPENCV_INCLUDE_DIR AND OPENCV_CALIB3D_LIBRARY AND OPENCV_CORE_LIBRARY)
+    add_library(uwvdb_fit_libraries INTERFACE)
+    target_include_directories(uwvdb_fit_libraries SYSTEM INTERFACE ${OPENCV_INCLUDE_DIR})
+    target_link_libraries(uwvdb_fit_libraries INTERFACE
+        Ceres::ceres ${OPENCV_CALIB3D_LIBRARY} ${OPENCV_CORE_LIBRARY})
+endif()
+
 # The system's interpreter, of which the packages pybind11 and NumPy are, whatever else is in PATH.
 if(UWVDB_BUILD_PYTHON)
     if(NOT Python_EXECUTABLE AND EXISTS /usr/bin/python3)

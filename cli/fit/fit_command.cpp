@@ -1,0 +1,210 @@
+#include "cli/fit/fit_command.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/console.h"
+#include "cli/fit/fit_report.h"
+#include "cli/process.h"
+#include "core/base/csv_table.h"
+#include "core/base/error.h"
+#include "core/base/input_files.h"
+#include "core/base/parallel.h"
+#include "core/base/text.h"
+#include "edit/document/scene_text.h"
+#include "fit/point_residuals.h"
+#include "fit/robust_fit.h"
+#include "fit/unknowns.h"
+
+namespace uw {
+
+namespace {
+
+const char* const k_fit_examples = R"(Examples:
+  uwvdb fit rig.yaml --points corners.csv --unknown camera.port.distance,camera.port.normal
+  uwvdb fit rig.yaml --points corners.csv --unknown camera.port.thickness \
+        --prior camera.port.thickness=0.01+-0.0005 -o fitted.yaml --report fit.html
+  uwvdb fit rig.yaml --points corners.csv --unknown camera.intrinsics,camera.port.distance \
+        --starts 5 --json
+
+Finds numbers of a scene, each with its standard error, by robust least squares, and says what the
+observations cannot tell. CORNERS.csv has the columns image, x, y, z, u, v and perhaps medium: the
+points of boards or other rigid things [m], in axes that all points of an image share, and where
+the image shows them [pixels; the image's corner is (0, 0)], in water, in air beyond the same port,
+or bare, without a port. Poses are found with the rest.
+Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
+130 interrupted.)";
+
+/// "camera.port.thickness=0.01+-0.0005" or "water.absorption=0.01..2".
+struct Assumption {
+    std::string key;
+    double first = 0, second = 0;
+};
+
+Assumption read_assumption(const std::string& option, const std::string& text,
+                           const std::string& between, const char* form) {
+    const std::size_t equals = text.find('=');
+    const std::size_t middle = text.find(between, equals == std::string::npos ? 0 : equals);
+    Assumption read;
+    if (equals == std::string::npos || middle == std::string::npos ||
+        parse_number(text.substr(equals + 1, middle - equals - 1), read.first) !=
+            NumberText::number ||
+        parse_number(text.substr(middle + between.size()), read.second) != NumberText::number)
+        throw UsageError(fmt::format("{} {}: give {}", option, printable(text), form));
+    read.key = text.substr(0, equals);
+    return read;
+}
+
+struct FitArguments {
+    std::filesystem::path scene, points, output, page, csv;
+    std::vector<std::string> overrides, unknowns;
+    std::vector<Assumption> priors, bounds;
+    int starts = 1;
+    bool keeps_outliers = false;
+    int threads = 0;
+    bool json = false, quiet = false;
+    ProgressForm progress = ProgressForm::text;
+};
+
+Options fit_options(FitArguments& a) {
+    Options options;
+    options.path("SCENE", "", a.scene, "scene file, with values from where to begin").required =
+        true;
+    options.path("--points", "CORNERS.csv", a.points, "points, and where images show them")
+        .required = true;
+    Option& unknown = options.parsed(
+        "--unknown", "KEY[,KEY...]",
+        [&a](const std::string& text) {
+            std::size_t begin = 0;
+            while (begin <= text.size()) {
+                const std::size_t end = std::min(text.find(',', begin), text.size());
+                a.unknowns.push_back(text.substr(begin, end - begin));
+                begin = end + 1;
+            }
+        },
+        "what to find: paths as of --set; * stands for every entry");
+    unknown.required = true;
+    unknown.repeatable = true;
+    options
+        .parsed(
+            "--prior", "KEY=VALUE+-ERROR",
+            [&a](const std::string& text) {
+                const Assumption read = read_assumption("--prior", text, "+-",
+                                                        "KEY=VALUE+-ERROR, such as "
+                                                        "camera.port.thickness=0.01+-0.0005");
+                if (!(read.second > 0))
+                    throw UsageError(
+                        fmt::format("--prior {}: the error must be above 0", printable(text)));
+                a.priors.push_back(read);
+            },
+            "what is known of an unknown beforehand, with its standard error")
+        .repeatable = true;
+    options
+        .parsed(
+            "--bounds", "KEY=LOW..HIGH",
+            [&a](const std::string& text) {
+                const Assumption read = read_assumption(
+                    "--bounds", text, "..", "KEY=LOW..HIGH, such as camera.port.distance=0..0.1");
+                if (!(read.first < read.second))
+                    throw UsageError(fmt::format("--bounds {}: the first must be below the second",
+                                                 printable(text)));
+                a.bounds.push_back(read);
+            },
+            "where an unknown lies in any case")
+        .repeatable = true;
+    options.flag("--keep-outliers", a.keeps_outliers,
+                 "let every observation count, by plain least squares");
+    options.integer("--starts", "N", a.starts, 1, 1000,
+                    "places to begin from, all but the first at random; the best is kept");
+    options.set(a.overrides);
+    options.path("-o,--output", "FITTED.yaml", a.output,
+                 "write the scene with what was found, all else as it is");
+    options.path("--report", "PAGE.html", a.page, "write a page with tables and plots");
+    options.path("--csv", "FILE", a.csv, "write the residual of each point");
+    options.flag("--json", a.json, "print everything as JSON instead of a table");
+    options.threads(a.threads);
+    options.messages(a.quiet, a.progress);
+    return options;
+}
+
+std::vector<Prior> priors_of(const FitArguments& a, const SceneUnknowns& unknowns) {
+    std::vector<Prior> priors(unknowns.size());
+    const auto of = [&](const char* option, const std::string& key) {
+        try {
+            return unknowns.within(key);
+        } catch (const UsageError& fault) {
+            throw UsageError(fmt::format("{} {}", option, fault.what()));
+        }
+    };
+    for (const Assumption& prior : a.priors)
+        for (const std::size_t i : of("--prior", prior.key)) {
+            priors[i].mean = prior.first;
+            priors[i].deviation = prior.second;
+        }
+    for (const Assumption& bounds : a.bounds)
+        for (const std::size_t i : of("--bounds", bounds.key)) {
+            priors[i].lower = bounds.first;
+            priors[i].upper = bounds.second;
+        }
+    return priors;
+}
+
+/// The scene's text with what was found, and all else as it was.
+std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
+                        const FitResult& result) {
+    SceneText text(
+        read_text_file(a.scene, a.scene.filename().string(), YamlLimits{}.bytes, "scene"),
+        a.scene.filename().string());
+    std::vector<double> values;
+    for (const FoundValue& found : result.values) values.push_back(found.value);
+    for (const auto& [path, value] : unknowns.settings(values)) text.set(path, value);
+    return text.text();
+}
+
+void run_fit(const FitArguments& a) {
+    const SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns);
+    FitOptions options;
+    options.priors = priors_of(a, unknowns);
+    options.starts = a.starts;
+    options.keeps_outliers = a.keeps_outliers;
+    PointResiduals points(unknowns, read_seen_points(read_csv_file(a.points, "--points")));
+    FitResult result;
+    with_threads(a.threads, [&] {
+        options.threads = permitted_threads();
+        Progress progress("fit", "", 1, a.quiet ? ProgressForm::none : a.progress);
+        double done = 0;
+        options.progress = [&](const std::string& stage, double) {
+            done += (1 - done) * 0.05;  // how many steps it takes, nobody knows
+            progress.update(done, stage);
+        };
+        result = robust_fit(points, unknowns, options);
+    });
+    const FitReport report(points, result);
+    TextFiles files;
+    if (!a.csv.empty()) files.add(a.csv, report.csv());
+    if (!a.page.empty()) files.add(a.page, report.page(a.scene.filename().string()));
+    if (!a.output.empty()) files.add(a.output, fitted_text(a, unknowns, result));
+    files.commit(a.quiet);
+    print_output(report.printed(a.json));
+}
+
+}  // namespace
+
+Command fit_command() {
+    const auto arguments = std::make_shared<FitArguments>();
+    return {"fit", "find numbers of a scene from what photographs show", k_fit_examples,
+            fit_options(*arguments), [arguments] {
+                install_stop_signal();
+                run_fit(*arguments);
+                return k_exit_done;
+            }};
+}
+
+}  // namespace uw

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace uw {
+
+/// Robust non-linear least squares, by Ceres in a module that is loaded when it is needed.
+
+/// What is to be made small: residuals in groups, such as the two coordinates of a corner. All
+/// depend on the shared unknowns; a group may depend on a block of six unknowns besides, the motion
+/// of its board, which it has in common with the other groups of that block.
+class ResidualFunction {
+  public:
+    static constexpr std::size_t k_block_size = 6;
+    using Block = std::array<double, k_block_size>;
+
+    ResidualFunction() = default;
+    virtual ~ResidualFunction() = default;
+    ResidualFunction(const ResidualFunction&) = delete;
+    ResidualFunction& operator=(const ResidualFunction&) = delete;
+    ResidualFunction(ResidualFunction&&) = delete;
+    ResidualFunction& operator=(ResidualFunction&&) = delete;
+
+    /// To be called before groups are evaluated for these shared unknowns. False if no scene is
+    /// like that.
+    virtual bool prepare(std::span<const double> shared, bool with_derivatives) = 0;
+
+    /// The residuals of a group, in units of their standard deviation, and, unless they are null,
+    /// their derivatives by the shared unknowns and by its block, a row per residual. False if they
+    /// cannot be computed. Thread safe.
+    virtual bool evaluate(std::size_t group, const Block* block, double* residuals,
+                          double* by_shared, double* by_block) const = 0;
+};
+
+/// A group of residuals: how many there are, and the block that they depend on; -1: none.
+struct ResidualGroup {
+    int residuals = 0;
+    int block = -1;
+    bool is_left_out = false;  // an outlier
+};
+
+struct LeastSquaresProblem {
+    struct Unknown {
+        double value = 0;  // where to begin; then what was found
+        double lower = -std::numeric_limits<double>::infinity();
+        double upper = std::numeric_limits<double>::infinity();
+        /// What is known of it beforehand; a deviation of infinity: nothing.
+        double prior_mean = 0, prior_deviation = std::numeric_limits<double>::infinity();
+    };
+    std::vector<Unknown> shared;
+    std::vector<ResidualFunction::Block> blocks;
+    std::vector<ResidualGroup> groups;
+    /// Where Cauchy's loss begins to count a group for less, in standard deviations; infinite: the
+    /// squares are summed as they are.
+    double loss_scale = std::numeric_limits<double>::infinity();
+    int most_iterations = 100;
+    int threads = 1;
+    std::function<void(int iteration, double cost)> progress{};  // may throw
+};
+
+/// What became of a problem, whose unknowns are as they were found.
+struct LeastSquaresOutcome {
+    bool converged = false;
+    int iterations = 0;
+    double cost = 0;  // half the sum of the squares, or of what the loss makes of them
+    /// The shared unknowns' information, J^T J without what the blocks can explain as well (the
+    /// Schur complement) and without priors, row by row; outliers and the loss do not count.
+    std::vector<double> information;
+};
+
+/// Throws what `function` and `progress` throw, UsageError if the module is not there, and
+/// InputError if the solver cannot begin: the first values are impossible.
+LeastSquaresOutcome solve_least_squares(ResidualFunction& function, LeastSquaresProblem& problem);
+
+/// Eigenvalues, ascending, and unit eigenvectors, one after the other, of a symmetric matrix.
+struct EigenSystem {
+    std::vector<double> values, vectors;
+};
+/// `matrix`: n x n numbers. Throws UsageError as above.
+EigenSystem symmetric_eigen_system(std::span<const double> matrix);
+
+/// Where a pinhole camera may be from points whose images are known.
+struct SeenPoints {
+    std::vector<std::array<double, 3>> points;  // x, y, z in the body's own axes
+    std::vector<std::array<double, 2>> images;  // x/z, y/z of the directions to them
+};
+/// camera_from_body as a rotation matrix, row by row, and the translation behind it.
+using RigidMatrix = std::array<double, 12>;
+/// The poses from which points are seen so, the best first; none if they do not tell. Throws
+/// UsageError as above.
+std::vector<RigidMatrix> poses_from_points(const SeenPoints& seen);
+
+/// What the module exports: each puts what it is left with into `fault`.
+namespace least_squares_module {
+inline constexpr const char* k_name = "uwvdb_fitting";
+inline constexpr const char* k_solve = "uwvdb_solve_least_squares";
+using Solve = void(ResidualFunction& function, LeastSquaresProblem& problem,
+                   LeastSquaresOutcome& outcome, std::exception_ptr& fault);
+inline constexpr const char* k_eigen = "uwvdb_symmetric_eigen_system";
+using Eigen = void(std::span<const double> matrix, EigenSystem& system);
+inline constexpr const char* k_poses = "uwvdb_poses_from_points";
+using Poses = void(const SeenPoints& seen, std::vector<RigidMatrix>& poses);
+}  // namespace least_squares_module
+
+}  // namespace uw

@@ -1,0 +1,226 @@
+#include "fit/point_residuals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <utility>
+#include <variant>
+
+#include "camera/calibration.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+
+namespace uw {
+
+namespace {
+
+constexpr std::array<std::pair<std::string_view, SeenThrough>, 3> k_media{
+    {{"water", SeenThrough::water}, {"air", SeenThrough::air}, {"bare", SeenThrough::bare}}};
+
+constexpr std::size_t index_of(SeenThrough through) {
+    return static_cast<std::size_t>(through);
+}
+
+/// The scene's camera in its own axes.
+CameraDesc camera_itself(const SceneDesc& scene, SeenThrough through) {
+    CameraDesc camera = scene.camera;
+    apply_calibration(camera);
+    camera.world_from_camera = {};
+    camera.trajectory.reset();
+    if (through == SeenThrough::bare) camera.port.reset();
+    if (through == SeenThrough::air && camera.port)
+        std::visit([](auto& port) { port.n_water = port.n_air; }, *camera.port);
+    return camera;
+}
+
+Point3 moved(const Pose& pose, const ResidualFunction::Block& by, const Vector3& from_centre) {
+    const Vector3 turned =
+        rotation_by({by[0], by[1], by[2]}).matrix() * (pose.rotation.matrix() * from_centre);
+    return pose.position + (turned + Vector3{by[3], by[4], by[5]});
+}
+
+}  // namespace
+
+PointTable read_seen_points(const CsvTable& table) {
+    const std::vector<std::string> names = table.text("image");
+    const std::vector<double> x = table.numbers("x"), y = table.numbers("y"),
+                              z = table.numbers("z"), u = table.numbers("u"),
+                              v = table.numbers("v");
+    std::vector<std::string> media;
+    if (std::ranges::find(table.columns(), "medium") != table.columns().end())
+        media = table.text("medium");
+    PointTable seen;
+    std::map<std::string, std::size_t> indices;
+    std::vector<std::size_t> counts;
+    for (std::size_t row = 0; row < table.row_count(); ++row) {
+        const auto [entry, is_new] = indices.emplace(names[row], seen.images.size());
+        if (is_new) {
+            seen.images.push_back(names[row]);
+            counts.push_back(0);
+        }
+        SeenPoint point{entry->second, {x[row], y[row], z[row]}, {u[row], v[row]}};
+        if (!media.empty()) {
+            const auto medium = std::ranges::find(k_media, media[row],
+                                                  &std::pair<std::string_view, SeenThrough>::first);
+            if (medium == k_media.end())
+                throw InputError(fmt::format("{}: column medium: '{}': {}", table.name(),
+                                             printable(media[row]),
+                                             suggestion(media[row], words_of(k_media))));
+            point.through = medium->second;
+        }
+        ++counts[point.image];
+        seen.points.push_back(point);
+    }
+    constexpr std::size_t k_fewest = 4;
+    for (std::size_t i = 0; i < counts.size(); ++i)
+        if (counts[i] < k_fewest)
+            throw InputError(fmt::format("{}: image {}: has {}, and a pose needs {}; leave it out",
+                                         table.name(), printable(seen.images[i]),
+                                         counted(counts[i], "point"), k_fewest));
+    if (seen.points.empty())
+        throw InputError(fmt::format("{}: has no points; give a row for each", table.name()));
+    return seen;
+}
+
+PointResiduals::PointResiduals(const SceneUnknowns& unknowns, PointTable seen)
+    : unknowns_(unknowns), seen_(std::move(seen)) {
+    std::vector<Vector3> sums(seen_.images.size(), Vector3{0});
+    std::vector<double> counts(seen_.images.size(), 0);
+    for (const SeenPoint& point : seen_.points) {
+        is_used_[index_of(point.through)] = true;
+        sums[point.image] += from_origin(point.point);
+        counts[point.image] += 1;
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        centres_.push_back(at_origin_plus(sums[i] / counts[i]));
+    std::vector<double> start;
+    for (const SceneUnknown& unknown : unknowns_.all()) start.push_back(unknown.start);
+    cameras_ = cameras_of(start);
+    for (std::size_t i = 0; i < seen_.images.size(); ++i) poses_.push_back(start_pose(i));
+}
+
+PointResiduals::Cameras PointResiduals::cameras_of(std::span<const double> values) const {
+    const SceneDesc scene = unknowns_.scene(values);
+    Cameras cameras;
+    for (const auto& [name, through] : k_media)
+        if (is_used_[index_of(through)])
+            cameras[index_of(through)].emplace(camera_itself(scene, through));
+    return cameras;
+}
+
+Pose PointResiduals::start_pose(std::size_t image) const {
+    // As a pinhole that sees in the directions of the rays in the water, whose feet are apart by
+    // less than the distance of what is seen.
+    SeenPoints pinhole;
+    for (const SeenPoint& point : seen_.points) {
+        if (point.image != image) continue;
+        const Camera& camera = *cameras_[index_of(point.through)];
+        const std::optional<Ray> ray = camera.refracted_ray(point.seen.x, point.seen.y);
+        constexpr double k_least_forward = 0.05;
+        if (!ray || ray->direction.z < k_least_forward) continue;
+        const Vector3 from_centre = point.point - centres_[image];
+        pinhole.points.push_back({from_centre.x, from_centre.y, from_centre.z});
+        pinhole.images.push_back(
+            {ray->direction.x / ray->direction.z, ray->direction.y / ray->direction.z});
+    }
+    for (const RigidMatrix& found : poses_from_points(pinhole)) {
+        Matrix3 rotation{};
+        for (int row = 0; row < 3; ++row)
+            for (int column = 0; column < 3; ++column)
+                rotation[column][row] = found[static_cast<std::size_t>(3 * row + column)];
+        const Pose pose{{found[9], found[10], found[11]}, rotation_of(rotation)};
+        const bool is_visible = std::ranges::all_of(seen_.points, [&](const SeenPoint& point) {
+            return point.image != image ||
+                   cameras_[index_of(point.through)]
+                       ->project(moved(pose, {}, point.point - centres_[image]))
+                       .has_value();
+        });
+        if (is_visible) return pose;
+    }
+    throw InputError(fmt::format(
+        "image {}: no pose was found from which the scene's camera sees its points where they "
+        "are; check the columns, and that the scene's lens and port are about right",
+        printable(seen_.images[image])));
+}
+
+bool PointResiduals::prepare(std::span<const double> shared, bool with_derivatives) {
+    throw_if_stopped();
+    try {
+        cameras_ = cameras_of(shared);
+        moved_.clear();
+        steps_.clear();
+        if (!with_derivatives) return true;
+        // Central differences of rays that are exact to 1e-9 pixels: errors of the second order in
+        // 1e-4, which is 1e-8.
+        constexpr double k_step = 1e-4;
+        std::vector<double> values(shared.begin(), shared.end());
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const SceneUnknown& unknown = unknowns_.all()[i];
+            const double step = k_step * unknown.scale;
+            const double back = std::max(shared[i] - step, unknown.lower);
+            const double ahead = std::min(shared[i] + step, unknown.upper);
+            std::array<Cameras, 2>& pair = moved_.emplace_back();
+            values[i] = back;
+            pair[0] = cameras_of(values);
+            values[i] = ahead;
+            pair[1] = cameras_of(values);
+            values[i] = shared[i];
+            steps_.push_back(ahead - back);
+        }
+        return true;
+    } catch (const InputError&) {
+        return false;  // no such scene: the solver takes a smaller step
+    }
+}
+
+bool PointResiduals::evaluate(std::size_t group, const Block* block, double* residuals,
+                              double* by_shared, double* by_block) const {
+    const SeenPoint& point = seen_.points[group];
+    const std::size_t medium = index_of(point.through);
+    const Pose& pose = poses_[point.image];
+    const Vector3 from_centre = point.point - centres_[point.image];
+    const Point3 here = moved(pose, *block, from_centre);
+    const std::optional<ImagePoint> seen = cameras_[medium]->project(here);
+    if (!seen) return false;
+    residuals[0] = (seen->x - point.seen.x) / deviation();
+    residuals[1] = (seen->y - point.seen.y) / deviation();
+    const auto set = [&](double* rows, std::size_t width, std::size_t column,
+                         const std::optional<ImagePoint>& back,
+                         const std::optional<ImagePoint>& ahead, double step) {
+        if (!back || !ahead) return false;
+        rows[column] = (ahead->x - back->x) / (step * deviation());
+        rows[width + column] = (ahead->y - back->y) / (step * deviation());
+        return true;
+    };
+    if (by_shared != nullptr)
+        for (std::size_t i = 0; i < moved_.size(); ++i)
+            if (!set(by_shared, moved_.size(), i, moved_[i][0][medium]->project(here),
+                     moved_[i][1][medium]->project(here), steps_[i]))
+                return false;
+    if (by_block == nullptr) return true;
+    const double step = 1e-5 * glm::length(from_origin(here));  // [m]; of angles [rad], likewise
+    for (std::size_t i = 0; i < k_block_size; ++i) {
+        Block back = *block, ahead = *block;
+        const double part = i < 3 ? 1e-5 : step;
+        back[i] -= part;
+        ahead[i] += part;
+        if (!set(by_block, k_block_size, i,
+                 cameras_[medium]->project(moved(pose, back, from_centre)),
+                 cameras_[medium]->project(moved(pose, ahead, from_centre)), 2 * part))
+            return false;
+    }
+    return true;
+}
+
+std::vector<ResidualGroup> PointResiduals::groups() const {
+    std::vector<ResidualGroup> groups;
+    for (const SeenPoint& point : seen_.points)
+        groups.push_back({2, static_cast<int>(point.image)});
+    return groups;
+}
+
+}  // namespace uw

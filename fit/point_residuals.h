@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "camera/camera.h"
+#include "core/base/csv_table.h"
+#include "core/scene/trajectory.h"
+#include "fit/robust_fit.h"
+#include "fit/unknowns.h"
+
+namespace uw {
+
+/// Points of boards and other rigid things, and where photographs show them.
+
+/// What the camera was in when it saw a point: the scene's water; air, beyond the same port; or the
+/// air without a port.
+enum class SeenThrough : std::uint8_t { water, air, bare };
+
+struct SeenPoint {
+    std::size_t image = 0;  // in the order in which they first appear
+    Point3 point;           // in axes that all points of the image share [m]
+    ImagePoint seen;        // corner of the image (0, 0) [pixels]
+    SeenThrough through = SeenThrough::water;
+};
+
+struct PointTable {
+    std::vector<std::string> images;  // their names in the table
+    std::vector<SeenPoint> points;
+};
+
+/// Reads a table with the columns image, x, y, z, u, v and perhaps medium (water, air, bare).
+/// Throws InputError for other tables, for points that are not finite, and for images with fewer
+/// than four.
+PointTable read_seen_points(const CsvTable& table);
+
+/// How far from where they were seen a scene's camera sees points, a group of two residuals for
+/// each [pixels over the deviation]. Each image's things have a pose of their own, a block.
+class PointResiduals final : public Observations {
+  public:
+    /// `unknowns` outlive it. Throws InputError for an image whose points the camera cannot see
+    /// where they are, as the scene is.
+    PointResiduals(const SceneUnknowns& unknowns, PointTable seen);
+
+    bool prepare(std::span<const double> shared, bool with_derivatives) override;
+    bool evaluate(std::size_t group, const Block* block, double* residuals, double* by_shared,
+                  double* by_block) const override;
+
+    std::vector<ResidualGroup> groups() const override;
+    std::size_t block_count() const override { return poses_.size(); }
+
+    const PointTable& seen() const { return seen_; }
+
+  private:
+    /// A camera in what it was in, as far as the points need it.
+    using Cameras = std::array<std::optional<Camera>, 3>;
+    Cameras cameras_of(std::span<const double> values) const;
+    Pose start_pose(std::size_t image) const;
+
+    const SceneUnknowns& unknowns_;
+    PointTable seen_;
+    std::array<bool, 3> is_used_{};
+    std::vector<Point3> centres_;  // of each image's points
+    std::vector<Pose> poses_;      // camera_from_body where the fit began, about the centres
+    Cameras cameras_;
+    std::vector<std::array<Cameras, 2>> moved_;  // by a step back and ahead, per unknown
+    std::vector<double> steps_;                  // from the one to the other
+};
+
+}  // namespace uw

@@ -1,0 +1,287 @@
+#include "fit/robust_fit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/random.h"
+
+namespace uw {
+
+namespace {
+
+constexpr double k_infinity = std::numeric_limits<double>::infinity();
+/// Beyond so many standard deviations an observation is of something else.
+constexpr double k_outlier = 5;
+/// Where Cauchy's loss has 95 % of the efficiency of squares for normal residuals.
+constexpr double k_cauchy = 2.385;
+
+/// Residuals of all groups as a problem's unknowns have them, in the observations' unit; infinite
+/// where there are none.
+std::vector<double> residuals_of(Observations& observations, const LeastSquaresProblem& problem) {
+    std::vector<double> shared;
+    for (const LeastSquaresProblem::Unknown& unknown : problem.shared)
+        shared.push_back(unknown.value);
+    std::vector<double> all;
+    const bool is_possible = observations.prepare(shared, false);
+    for (std::size_t i = 0; i < problem.groups.size(); ++i) {
+        const ResidualGroup& group = problem.groups[i];
+        std::vector<double> some(static_cast<std::size_t>(group.residuals), k_infinity);
+        const ResidualFunction::Block* const block =
+            group.block >= 0 ? &problem.blocks[static_cast<std::size_t>(group.block)] : nullptr;
+        if (!is_possible || !observations.evaluate(i, block, some.data(), nullptr, nullptr))
+            std::ranges::fill(some, k_infinity);
+        for (const double one : some) all.push_back(one * observations.deviation());
+    }
+    return all;
+}
+
+/// The deviation of normal numbers of whose magnitudes this is the median.
+double robust_deviation(std::span<const double> residuals) {
+    std::vector<double> magnitudes;
+    for (const double residual : residuals)
+        if (std::isfinite(residual)) magnitudes.push_back(std::abs(residual));
+    if (magnitudes.empty()) return 0;
+    const auto middle = magnitudes.begin() + static_cast<std::ptrdiff_t>(magnitudes.size() / 2);
+    std::ranges::nth_element(magnitudes, middle);
+    constexpr double k_normal = 1.4826;  // 1 / the median of a normal number's magnitude
+    return k_normal * *middle;
+}
+
+double rms_of(std::span<const double> residuals) {
+    double squares = 0;
+    for (const double residual : residuals) squares += residual * residual;
+    return residuals.empty() ? 0 : std::sqrt(squares / static_cast<double>(residuals.size()));
+}
+
+/// Those of groups that are not left out.
+std::vector<double> without_outliers(std::span<const double> residuals,
+                                     std::span<const ResidualGroup> groups) {
+    std::vector<double> kept;
+    std::size_t at = 0;
+    for (const ResidualGroup& group : groups) {
+        const auto count = static_cast<std::size_t>(group.residuals);
+        if (!group.is_left_out)
+            kept.insert(kept.end(), residuals.begin() + static_cast<std::ptrdiff_t>(at),
+                        residuals.begin() + static_cast<std::ptrdiff_t>(at + count));
+        at += count;
+    }
+    return kept;
+}
+
+void leave_out_outliers(std::span<const double> residuals, double deviation,
+                        std::vector<ResidualGroup>& groups) {
+    std::size_t at = 0;
+    for (ResidualGroup& group : groups) {
+        group.is_left_out = false;
+        for (int i = 0; i < group.residuals; ++i, ++at)
+            if (!(std::abs(residuals[at]) <= k_outlier * deviation)) group.is_left_out = true;
+    }
+}
+
+class Rounds {
+  public:
+    Rounds(Observations& observations, LeastSquaresProblem& problem, const FitOptions& options)
+        : observations_(observations), problem_(problem), options_(options) {}
+
+    LeastSquaresOutcome solve() {
+        observations_.set_deviation(1);
+        // From far away, squares lead there; what is far off afterwards are outliers.
+        LeastSquaresOutcome outcome = round("squares", k_infinity);
+        double deviation = deviation_now();
+        if (options_.keeps_outliers) {
+            observations_.set_deviation(deviation > 0 ? deviation : 1);
+            return round("standard errors", k_infinity);
+        }
+        constexpr int k_most_rounds = 8;
+        for (int i = 0; i < k_most_rounds && deviation > 0; ++i) {
+            observations_.set_deviation(deviation);
+            outcome = round("without outliers", k_cauchy);
+            const double before = std::exchange(deviation, deviation_now());
+            if (std::abs(deviation - before) <= 0.02 * before) break;
+        }
+        if (!(deviation > 0)) return outcome;
+        leave_out_outliers(residuals_of(observations_, problem_), deviation, problem_.groups);
+        observations_.set_deviation(deviation);
+        return round("standard errors", k_infinity);
+    }
+
+    int iterations() const { return iterations_; }
+
+  private:
+    LeastSquaresOutcome round(const char* stage, double loss_scale) {
+        problem_.loss_scale = loss_scale;
+        if (options_.progress)
+            problem_.progress = [&, stage](int, double cost) { options_.progress(stage, cost); };
+        LeastSquaresOutcome outcome = solve_least_squares(observations_, problem_);
+        iterations_ += outcome.iterations;
+        return outcome;
+    }
+    double deviation_now() { return robust_deviation(residuals_of(observations_, problem_)); }
+
+    Observations& observations_;
+    LeastSquaresProblem& problem_;
+    const FitOptions& options_;
+    int iterations_ = 0;
+};
+
+/// Standard errors and correlations from the information, in units of the residuals' `deviation`
+/// as it was assumed.
+void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
+    const std::size_t n = result.values.size();
+    if (n == 0) return;
+    // In scales of the unknowns, so that its eigenvalues compare.
+    std::vector<double> information = outcome.information;
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = 0; j < n; ++j) {
+            information[i * n + j] *=
+                result.values[i].unknown.scale * result.values[j].unknown.scale;
+            if (i == j)
+                information[i * n + j] +=
+                    std::pow(result.values[i].unknown.scale / result.values[i].prior_deviation, 2);
+        }
+    const EigenSystem system = symmetric_eigen_system(information);
+    const double greatest = std::max(system.values.back(), 0.0);
+    std::vector<double> covariance(n * n, 0.0);
+    std::vector<bool> is_free(n, false);
+    for (std::size_t k = 0; k < n; ++k) {
+        const std::span vector = std::span(system.vectors).subspan(k * n, n);
+        // Below rounding nothing is known; and what is known to no better than the unknowns' own
+        // size, as good as nothing.
+        const bool is_nothing = !(system.values[k] > 1e-13 * greatest);
+        const double error = is_nothing ? k_infinity : 1 / std::sqrt(system.values[k]);
+        if (error > 1) {
+            FreeDirection direction;
+            direction.error = error;
+            constexpr double k_counts = 0.2;
+            for (std::size_t i = 0; i < n; ++i)
+                if (std::abs(vector[i]) > k_counts) direction.unknowns.push_back(i);
+            std::ranges::sort(direction.unknowns, std::greater{},
+                              [&](std::size_t i) { return std::abs(vector[i]); });
+            for (const std::size_t i : direction.unknowns) direction.shares.push_back(vector[i]);
+            result.free_directions.push_back(std::move(direction));
+        }
+        if (is_nothing) {
+            for (std::size_t i = 0; i < n; ++i)
+                if (std::abs(vector[i]) > 1e-3) is_free[i] = true;
+            continue;
+        }
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = 0; j < n; ++j)
+                covariance[i * n + j] += vector[i] * vector[j] * error * error;
+    }
+    result.correlations.assign(n * n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+        FoundValue& found = result.values[i];
+        found.error =
+            is_free[i] ? k_infinity : std::sqrt(covariance[i * n + i]) * found.unknown.scale;
+        for (std::size_t j = 0; j < n; ++j) {
+            const double both = std::sqrt(covariance[i * n + i] * covariance[j * n + j]);
+            if (both > 0) result.correlations[i * n + j] = covariance[i * n + j] / both;
+        }
+    }
+}
+
+LeastSquaresProblem problem_of(const Observations& observations, const SceneUnknowns& unknowns,
+                               const FitOptions& options) {
+    LeastSquaresProblem problem;
+    problem.groups = observations.groups();
+    problem.blocks.resize(observations.block_count());
+    problem.threads = options.threads;
+    for (std::size_t i = 0; i < unknowns.size(); ++i) {
+        const SceneUnknown& unknown = unknowns.all()[i];
+        LeastSquaresProblem::Unknown shared{unknown.start, unknown.lower, unknown.upper};
+        if (!options.priors.empty()) {
+            const Prior& prior = options.priors[i];
+            shared.lower = std::max(shared.lower, prior.lower);
+            shared.upper = std::min(shared.upper, prior.upper);
+            shared.prior_mean = prior.mean;
+            shared.prior_deviation = prior.deviation;
+        }
+        problem.shared.push_back(shared);
+    }
+    return problem;
+}
+
+/// Somewhere around where the fit begins: within its bounds, where both are given, else within a
+/// third of its scale, and of its prior.
+void begin_elsewhere(LeastSquaresProblem& problem, const SceneUnknowns& unknowns,
+                     std::uint64_t seed, int start) {
+    for (std::size_t i = 0; i < problem.shared.size(); ++i) {
+        LeastSquaresProblem::Unknown& unknown = problem.shared[i];
+        const double share = draw_random(seed, unknowns.all()[i].name, 0, start);
+        if (std::isfinite(unknown.lower) && std::isfinite(unknown.upper)) {
+            unknown.value = unknown.lower + share * (unknown.upper - unknown.lower);
+            continue;
+        }
+        const double width = std::min(unknowns.all()[i].scale / 3, unknown.prior_deviation);
+        unknown.value =
+            std::clamp(unknown.value + (2 * share - 1) * width, unknown.lower, unknown.upper);
+    }
+}
+
+}  // namespace
+
+FitResult robust_fit(Observations& observations, const SceneUnknowns& unknowns,
+                     const FitOptions& options) {
+    FitResult result;
+    const LeastSquaresProblem first = problem_of(observations, unknowns, options);
+    observations.set_deviation(1);
+    result.rms_at_start = rms_of(residuals_of(observations, first));
+    std::optional<LeastSquaresProblem> best;
+    LeastSquaresOutcome outcome;
+    double deviation = 1;
+    for (int start = 0; start < options.starts; ++start) {
+        LeastSquaresProblem problem = first;
+        if (start > 0) begin_elsewhere(problem, unknowns, options.seed, start);
+        Rounds rounds(observations, problem, options);
+        LeastSquaresOutcome found;
+        try {
+            found = rounds.solve();
+        } catch (const InputError&) {
+            if (start == 0) throw;  // of the others, some lead nowhere
+            continue;
+        }
+        result.iterations += rounds.iterations();
+        const double now = observations.deviation();
+        result.costs.push_back(now);
+        if (best && now >= deviation) continue;
+        best = std::move(problem);
+        outcome = std::move(found);
+        deviation = now;
+    }
+    observations.set_deviation(deviation);
+    result.converged = outcome.converged;
+    result.residuals = residuals_of(observations, *best);
+    result.blocks = best->blocks;
+    for (const ResidualGroup& group : best->groups) result.outliers.push_back(group.is_left_out);
+    const std::vector<double> kept = without_outliers(result.residuals, best->groups);
+    result.rms = rms_of(kept);
+    result.rms_with_outliers = rms_of(result.residuals);
+    const std::size_t free = best->shared.size() + 6 * best->blocks.size();
+    result.deviation = kept.size() > free
+                           ? std::sqrt(result.rms * result.rms * static_cast<double>(kept.size()) /
+                                       static_cast<double>(kept.size() - free))
+                           : k_infinity;
+    for (std::size_t i = 0; i < best->shared.size(); ++i) {
+        const LeastSquaresProblem::Unknown& shared = best->shared[i];
+        FoundValue found{unknowns.all()[i], shared.value};
+        found.prior_deviation = shared.prior_deviation;
+        const double little = 1e-6 * found.unknown.scale;
+        found.is_at_bound =
+            shared.value < shared.lower + little || shared.value > shared.upper - little;
+        result.values.push_back(std::move(found));
+    }
+    // The information is in units of the deviation that was assumed; priors are in their own.
+    const double ratio = deviation / result.deviation;
+    for (double& entry : outcome.information) entry *= ratio * ratio;
+    find_errors(outcome, result);
+    return result;
+}
+
+}  // namespace uw

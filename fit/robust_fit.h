@@ -1,0 +1,87 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "fit/least_squares.h"
+#include "fit/unknowns.h"
+
+namespace uw {
+
+/// What was observed, held against what a scene predicts: residuals in units of a standard
+/// deviation, which is not known beforehand.
+class Observations : public ResidualFunction {
+  public:
+    virtual std::vector<ResidualGroup> groups() const = 0;
+    virtual std::size_t block_count() const = 0;
+
+    /// The standard deviation of a residual, in the observations' own unit.
+    void set_deviation(double deviation) { deviation_ = deviation; }
+    double deviation() const { return deviation_; }
+
+  private:
+    double deviation_ = 1;
+};
+
+/// What is known of an unknown beforehand.
+struct Prior {
+    double mean = 0;
+    double deviation = std::numeric_limits<double>::infinity();
+    double lower = -std::numeric_limits<double>::infinity();
+    double upper = std::numeric_limits<double>::infinity();
+};
+
+struct FitOptions {
+    std::vector<Prior> priors;    // one per unknown, or none
+    bool keeps_outliers = false;  // all observations count, whatever they are of
+    int starts = 1;               // from how many places to begin; all but the first at random
+    std::uint64_t seed = 0;
+    int threads = 1;
+    std::function<void(const std::string& stage, double cost)> progress{};
+};
+
+/// An unknown as it was found.
+struct FoundValue {
+    SceneUnknown unknown;
+    double value = 0;
+    double error = 0;            // standard error; infinite if it is not determined
+    double prior_deviation = 0;  // infinite: none
+    bool is_at_bound = false;
+};
+
+/// Unknowns of which only a combination is determined: moved together in these shares of their
+/// scales, they leave the observations as they are.
+struct FreeDirection {
+    std::vector<std::size_t> unknowns;  // most affected first
+    std::vector<double> shares;         // likewise, of unit length
+    /// The standard error along it, in scales; infinite: nothing at all is known.
+    double error = 0;
+};
+
+struct FitResult {
+    bool converged = false;
+    std::vector<FoundValue> values;
+    std::vector<double> correlations;  // n x n
+    std::vector<FreeDirection> free_directions;
+    std::vector<ResidualFunction::Block> blocks;
+    std::vector<double> residuals;          // of all groups, in the observations' unit
+    std::vector<bool> outliers;             // per group
+    double rms = 0, rms_with_outliers = 0;  // over residuals, in the observations' unit
+    double deviation = 0;  // of a residual, estimated: with as many fewer as there are unknowns
+    double rms_at_start = 0;
+    int iterations = 0;
+    std::vector<double> costs;  // of each start, as found
+};
+
+/// Finds the unknowns by least squares that outliers do not spoil: rounds with Cauchy's loss, whose
+/// scale follows the median of the residuals, until that stays the same; then, without those
+/// beyond five standard deviations, plain squares, to which the standard errors belong. Throws as
+/// solve_least_squares, and what observations throw.
+FitResult robust_fit(Observations& observations, const SceneUnknowns& unknowns,
+                     const FitOptions& options);
+
+}  // namespace uw

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/vector_math.h"
+#include "core/scene/scene_desc.h"
+#include "core/scene/yaml_document.h"
+
+namespace uw {
+
+/// One unknown number of a scene.
+struct SceneUnknown {
+    std::string name;  // "water.absorption[0]", "camera.port.normal (tilt 1)"
+    std::string unit;  // "deg" of tilts; else empty: the scene's own
+    double start = 0;
+    double scale = 1;  // a change that matters, > 0
+    /// What scenes may have.
+    double lower = -std::numeric_limits<double>::infinity();
+    double upper = std::numeric_limits<double>::infinity();
+};
+
+/// Numbers of a scene that are to be found, and the scenes that have given ones in their place.
+class SceneUnknowns {
+  public:
+    /// `keys` are paths as of --set, "water.absorption" or "camera.port.distance", where * stands
+    /// for every entry: "lamps.*.position". A list of numbers is an unknown for each; a `normal` or
+    /// `direction` is two, by which it is tilted [deg]. Where numbers end of their own accord, such
+    /// as at 0, is found by trying them with the scene's reader. `file` is the scene's. Throws
+    /// UsageError for keys that the scene does not have or that hold no numbers, and as
+    /// scene_of_tree.
+    SceneUnknowns(ConfigNode tree, std::filesystem::path file, std::span<const std::string> keys);
+
+    const std::vector<SceneUnknown>& all() const { return unknowns_; }
+    std::size_t size() const { return unknowns_.size(); }
+
+    /// The scene with these values, one per unknown. Throws InputError if none may have them.
+    SceneDesc scene(std::span<const double> values) const;
+
+    /// The paths that `values` belong to, with what is written there, as SceneText::set takes it.
+    std::vector<std::pair<std::string, std::string>> settings(std::span<const double> values) const;
+
+    /// The unknowns whose key, as it was given or as it is, is or lies within `key`: for priors and
+    /// bounds. Throws UsageError if there are none.
+    std::vector<std::size_t> within(const std::string& key) const;
+
+  private:
+    /// A place in the scene with one unknown, or of a direction two.
+    struct Place {
+        std::string path;
+        std::size_t first = 0;
+        bool is_direction = false;
+        Vector3 direction{};  // unit, as the scene has it
+        Vector3 tilts[2]{};   // unit, across it and each other
+    };
+    void add(const ConfigNode& node, const std::string& path);
+    void add_number(const ConfigNode& node, const std::string& path, double scale);
+    void expand(const ConfigNode& node, std::span<const std::string> steps,
+                const std::string& path);
+    void limit();
+
+    ConfigNode tree_;
+    std::filesystem::path file_;
+    std::vector<SceneUnknown> unknowns_;
+    std::vector<Place> places_;
+};
+
+}  // namespace uw
