@@ -60,6 +60,7 @@ struct LeastSquaresProblem {
     /// squares are summed as they are.
     double loss_scale = std::numeric_limits<double>::infinity();
     int most_iterations = 100;
+    double tolerance = 1e-10;  // of the sum's relative change: then it has converged
     int threads = 1;
     std::function<void(int iteration, double cost)> progress{};  // may throw
 };

@@ -10,7 +10,6 @@
 #include <utility>
 #include <variant>
 
-#include "camera/calibration.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 
@@ -28,7 +27,6 @@ constexpr std::size_t index_of(SeenThrough through) {
 /// The scene's camera in its own axes.
 CameraDesc camera_itself(const SceneDesc& scene, SeenThrough through) {
     CameraDesc camera = scene.camera;
-    apply_calibration(camera);
     camera.world_from_camera = {};
     camera.trajectory.reset();
     if (through == SeenThrough::bare) camera.port.reset();
@@ -62,7 +60,7 @@ PointTable read_seen_points(const CsvTable& table) {
             seen.images.push_back(names[row]);
             counts.push_back(0);
         }
-        SeenPoint point{entry->second, {x[row], y[row], z[row]}, {u[row], v[row]}};
+        PhotographedPoint point{entry->second, {x[row], y[row], z[row]}, {u[row], v[row]}};
         if (!media.empty()) {
             const auto medium = std::ranges::find(k_media, media[row],
                                                   &std::pair<std::string_view, SeenThrough>::first);
@@ -90,7 +88,7 @@ PointResiduals::PointResiduals(const SceneUnknowns& unknowns, PointTable seen)
     : unknowns_(unknowns), seen_(std::move(seen)) {
     std::vector<Vector3> sums(seen_.images.size(), Vector3{0});
     std::vector<double> counts(seen_.images.size(), 0);
-    for (const SeenPoint& point : seen_.points) {
+    for (const PhotographedPoint& point : seen_.points) {
         is_used_[index_of(point.through)] = true;
         sums[point.image] += from_origin(point.point);
         counts[point.image] += 1;
@@ -116,7 +114,7 @@ Pose PointResiduals::start_pose(std::size_t image) const {
     // As a pinhole that sees in the directions of the rays in the water, whose feet are apart by
     // less than the distance of what is seen.
     SeenPoints pinhole;
-    for (const SeenPoint& point : seen_.points) {
+    for (const PhotographedPoint& point : seen_.points) {
         if (point.image != image) continue;
         const Camera& camera = *cameras_[index_of(point.through)];
         const std::optional<Ray> ray = camera.refracted_ray(point.seen.x, point.seen.y);
@@ -133,12 +131,13 @@ Pose PointResiduals::start_pose(std::size_t image) const {
             for (int column = 0; column < 3; ++column)
                 rotation[column][row] = found[static_cast<std::size_t>(3 * row + column)];
         const Pose pose{{found[9], found[10], found[11]}, rotation_of(rotation)};
-        const bool is_visible = std::ranges::all_of(seen_.points, [&](const SeenPoint& point) {
-            return point.image != image ||
-                   cameras_[index_of(point.through)]
-                       ->project(moved(pose, {}, point.point - centres_[image]))
-                       .has_value();
-        });
+        const bool is_visible =
+            std::ranges::all_of(seen_.points, [&](const PhotographedPoint& point) {
+                return point.image != image ||
+                       cameras_[index_of(point.through)]
+                           ->project(moved(pose, {}, point.point - centres_[image]))
+                           .has_value();
+            });
         if (is_visible) return pose;
     }
     throw InputError(fmt::format(
@@ -179,7 +178,7 @@ bool PointResiduals::prepare(std::span<const double> shared, bool with_derivativ
 
 bool PointResiduals::evaluate(std::size_t group, const Block* block, double* residuals,
                               double* by_shared, double* by_block) const {
-    const SeenPoint& point = seen_.points[group];
+    const PhotographedPoint& point = seen_.points[group];
     const std::size_t medium = index_of(point.through);
     const Pose& pose = poses_[point.image];
     const Vector3 from_centre = point.point - centres_[point.image];
@@ -218,7 +217,7 @@ bool PointResiduals::evaluate(std::size_t group, const Block* block, double* res
 
 std::vector<ResidualGroup> PointResiduals::groups() const {
     std::vector<ResidualGroup> groups;
-    for (const SeenPoint& point : seen_.points)
+    for (const PhotographedPoint& point : seen_.points)
         groups.push_back({2, static_cast<int>(point.image)});
     return groups;
 }

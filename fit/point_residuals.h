@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,7 @@ namespace uw {
 /// air without a port.
 enum class SeenThrough : std::uint8_t { water, air, bare };
 
-struct SeenPoint {
+struct PhotographedPoint {
     std::size_t image = 0;  // in the order in which they first appear
     Point3 point;           // in axes that all points of the image share [m]
     ImagePoint seen;        // corner of the image (0, 0) [pixels]
@@ -30,7 +31,7 @@ struct SeenPoint {
 
 struct PointTable {
     std::vector<std::string> images;  // their names in the table
-    std::vector<SeenPoint> points;
+    std::vector<PhotographedPoint> points;
 };
 
 /// Reads a table with the columns image, x, y, z, u, v and perhaps medium (water, air, bare).
@@ -53,7 +54,14 @@ class PointResiduals final : public Observations {
     std::vector<ResidualGroup> groups() const override;
     std::size_t block_count() const override { return poses_.size(); }
 
-    const PointTable& seen() const { return seen_; }
+    const std::vector<std::string>& images() const override { return seen_.images; }
+    Place place(std::size_t group) const override {
+        return {seen_.points[group].image, seen_.points[group].seen};
+    }
+    const char* noun() const override { return "point"; }
+    const char* unit() const override { return "px"; }
+    /// The length of a vector with two coordinates like that.
+    double of_group(double rms) const override { return std::numbers::sqrt2 * rms; }
 
   private:
     /// A camera in what it was in, as far as the points need it.

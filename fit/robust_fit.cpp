@@ -21,6 +21,9 @@ constexpr double k_outlier = 5;
 /// Where Cauchy's loss has 95 % of the efficiency of squares for normal residuals.
 constexpr double k_cauchy = 2.385;
 
+/// Relative changes of the sum at which it has converged.
+constexpr double k_on_the_way = 1e-4, k_in_the_end = 1e-8;
+
 /// Residuals of all groups as a problem's unknowns have them, in the observations' unit; infinite
 /// where there are none.
 std::vector<double> residuals_of(Observations& observations, const LeastSquaresProblem& problem) {
@@ -92,30 +95,32 @@ class Rounds {
     LeastSquaresOutcome solve() {
         observations_.set_deviation(1);
         // From far away, squares lead there; what is far off afterwards are outliers.
-        LeastSquaresOutcome outcome = round("squares", k_infinity);
+        LeastSquaresOutcome outcome = round("squares", k_infinity, k_on_the_way);
         double deviation = deviation_now();
         if (options_.keeps_outliers) {
             observations_.set_deviation(deviation > 0 ? deviation : 1);
-            return round("standard errors", k_infinity);
+            return round("standard errors", k_infinity, k_in_the_end);
         }
         constexpr int k_most_rounds = 8;
         for (int i = 0; i < k_most_rounds && deviation > 0; ++i) {
             observations_.set_deviation(deviation);
-            outcome = round("without outliers", k_cauchy);
+            outcome = round("without outliers", k_cauchy, k_on_the_way);
             const double before = std::exchange(deviation, deviation_now());
             if (std::abs(deviation - before) <= 0.02 * before) break;
         }
         if (!(deviation > 0)) return outcome;
         leave_out_outliers(residuals_of(observations_, problem_), deviation, problem_.groups);
         observations_.set_deviation(deviation);
-        return round("standard errors", k_infinity);
+        return round("standard errors", k_infinity, k_in_the_end);
     }
 
     int iterations() const { return iterations_; }
 
   private:
-    LeastSquaresOutcome round(const char* stage, double loss_scale) {
+    LeastSquaresOutcome round(const char* stage, double loss_scale, double tolerance) {
         problem_.loss_scale = loss_scale;
+        problem_.tolerance = tolerance;
+        problem_.most_iterations = tolerance < k_on_the_way ? 100 : 25;
         if (options_.progress)
             problem_.progress = [&, stage](int, double cost) { options_.progress(stage, cost); };
         LeastSquaresOutcome outcome = solve_least_squares(observations_, problem_);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/camera.h"
 #include "fit/least_squares.h"
 #include "fit/unknowns.h"
 
@@ -16,8 +17,22 @@ namespace uw {
 /// deviation, which is not known beforehand.
 class Observations : public ResidualFunction {
   public:
+    /// Where in which image something was observed.
+    struct Place {
+        std::size_t image = 0;
+        ImagePoint at;  // the image's corner is (0, 0) [pixels]
+    };
+
     virtual std::vector<ResidualGroup> groups() const = 0;
     virtual std::size_t block_count() const = 0;
+
+    virtual const std::vector<std::string>& images() const = 0;
+    virtual Place place(std::size_t group) const = 0;
+    /// What is observed, "point"; the residuals' unit, "px"; and what residuals of `rms` in each
+    /// number amount to in all of a group's.
+    virtual const char* noun() const = 0;
+    virtual const char* unit() const = 0;
+    virtual double of_group(double rms) const = 0;
 
     /// The standard deviation of a residual, in the observations' own unit.
     void set_deviation(double deviation) { deviation_ = deviation; }

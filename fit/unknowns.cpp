@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/key_path.h"
+#include "render/scene_loading.h"
 
 namespace uw {
 
@@ -200,7 +201,7 @@ SceneDesc SceneUnknowns::scene(std::span<const double> values) const {
     ConfigNode tree = tree_;
     for (const auto& [path, text] : settings(values))
         set_value(tree, path, parse_yaml_value(text, "the fit"), "the fit");
-    return scene_of_tree(tree, file_);
+    return load_scene_tree(tree, file_);
 }
 
 std::vector<std::size_t> SceneUnknowns::within(const std::string& key) const {

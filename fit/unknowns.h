@@ -32,7 +32,7 @@ class SceneUnknowns {
     /// `direction` is two, by which it is tilted [deg]. Where numbers end of their own accord, such
     /// as at 0, is found by trying them with the scene's reader. `file` is the scene's. Throws
     /// UsageError for keys that the scene does not have or that hold no numbers, and as
-    /// scene_of_tree.
+    /// load_scene_tree.
     SceneUnknowns(ConfigNode tree, std::filesystem::path file, std::span<const std::string> keys);
 
     const std::vector<SceneUnknown>& all() const { return unknowns_; }

@@ -19,6 +19,7 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "edit/document/scene_text.h"
+#include "fit/picture_residuals.h"
 #include "fit/point_residuals.h"
 #include "fit/robust_fit.h"
 #include "fit/unknowns.h"
@@ -31,14 +32,16 @@ const char* const k_fit_examples = R"(Examples:
   uwvdb fit rig.yaml --points corners.csv --unknown camera.port.distance,camera.port.normal
   uwvdb fit rig.yaml --points corners.csv --unknown camera.port.thickness \
         --prior camera.port.thickness=0.01+-0.0005 -o fitted.yaml --report fit.html
-  uwvdb fit rig.yaml --points corners.csv --unknown camera.intrinsics,camera.port.distance \
-        --starts 5 --json
+  uwvdb fit dive.yaml --images 'dive/%04d.png' -o fitted.yaml \
+        --unknown water.absorption,water.scattering.b,lamps.*.intensity
 
 Finds numbers of a scene, each with its standard error, by robust least squares, and says what the
 observations cannot tell. CORNERS.csv has the columns image, x, y, z, u, v and perhaps medium: the
 points of boards or other rigid things [m], in axes that all points of an image share, and where
 the image shows them [pixels; the image's corner is (0, 0)], in water, in air beyond the same port,
-or bare, without a port. Poses are found with the rest.
+or bare, without a port. Poses are found with the rest. Pictures are held against the images of the
+scene, frame by frame, cell by cell: raw numbers if its camera has a sensor, else light (OpenEXR) or
+what sRGB makes of it (PNG, JPEG).
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted.)";
 
@@ -63,10 +66,10 @@ Assumption read_assumption(const std::string& option, const std::string& text,
 }
 
 struct FitArguments {
-    std::filesystem::path scene, points, output, page, csv;
+    std::filesystem::path scene, points, images, output, page, csv;
     std::vector<std::string> overrides, unknowns;
     std::vector<Assumption> priors, bounds;
-    int starts = 1;
+    int cells = 64, starts = 1;
     bool keeps_outliers = false;
     int threads = 0;
     bool json = false, quiet = false;
@@ -77,8 +80,11 @@ Options fit_options(FitArguments& a) {
     Options options;
     options.path("SCENE", "", a.scene, "scene file, with values from where to begin").required =
         true;
-    options.path("--points", "CORNERS.csv", a.points, "points, and where images show them")
-        .required = true;
+    options.path("--points", "CORNERS.csv", a.points, "points, and where images show them");
+    options.path("--images", "PICTURE", a.images,
+                 "photographs of the scene; %04d is the frame's number");
+    options.integer("--cells", "N", a.cells, 4, 4096,
+                    "cells across a picture whose mean light is compared");
     Option& unknown = options.parsed(
         "--unknown", "KEY[,KEY...]",
         [&a](const std::string& text) {
@@ -127,7 +133,7 @@ Options fit_options(FitArguments& a) {
     options.path("-o,--output", "FITTED.yaml", a.output,
                  "write the scene with what was found, all else as it is");
     options.path("--report", "PAGE.html", a.page, "write a page with tables and plots");
-    options.path("--csv", "FILE", a.csv, "write the residual of each point");
+    options.path("--csv", "FILE", a.csv, "write all residuals as a table");
     options.flag("--json", a.json, "print everything as JSON instead of a table");
     options.threads(a.threads);
     options.messages(a.quiet, a.progress);
@@ -169,12 +175,24 @@ std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
 }
 
 void run_fit(const FitArguments& a) {
+    if (a.points.empty() == a.images.empty())
+        throw UsageError("give either --points, a table of corners, or --images, photographs");
     const SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns);
     FitOptions options;
     options.priors = priors_of(a, unknowns);
     options.starts = a.starts;
     options.keeps_outliers = a.keeps_outliers;
-    PointResiduals points(unknowns, read_seen_points(read_csv_file(a.points, "--points")));
+    std::unique_ptr<Observations> observations;
+    const PictureResiduals* pictures = nullptr;
+    if (!a.points.empty()) {
+        observations = std::make_unique<PointResiduals>(
+            unknowns, read_seen_points(read_csv_file(a.points, "--points")));
+    } else {
+        auto seen =
+            std::make_unique<PictureResiduals>(unknowns, pictures_called(a.images), a.cells);
+        pictures = seen.get();
+        observations = std::move(seen);
+    }
     FitResult result;
     with_threads(a.threads, [&] {
         options.threads = permitted_threads();
@@ -184,9 +202,9 @@ void run_fit(const FitArguments& a) {
             done += (1 - done) * 0.05;  // how many steps it takes, nobody knows
             progress.update(done, stage);
         };
-        result = robust_fit(points, unknowns, options);
+        result = robust_fit(*observations, unknowns, options);
     });
-    const FitReport report(points, result);
+    const FitReport report(*observations, pictures, result);
     TextFiles files;
     if (!a.csv.empty()) files.add(a.csv, report.csv());
     if (!a.page.empty()) files.add(a.page, report.page(a.scene.filename().string()));

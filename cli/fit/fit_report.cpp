@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <span>
 
 #include "cli/svg_plot.h"
+#include "core/base/csv_table.h"
 #include "core/base/json.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
+#include "core/image/colour.h"
 
 namespace uw {
 
@@ -40,51 +42,57 @@ std::vector<std::vector<std::string>> value_rows(const FitResult& result) {
     return rows;
 }
 
-/// The length of a point's residual [pixels].
-double length_of(const FitResult& result, std::size_t point) {
-    return std::hypot(result.residuals[2 * point], result.residuals[2 * point + 1]);
-}
-
-struct ImageSummary {
-    std::size_t points = 0, outliers = 0;
-    double squares = 0, greatest = 0;
-
-    double rms() const {
-        return points > outliers ? std::sqrt(squares / static_cast<double>(points - outliers)) : 0;
+/// The residuals of each group, and what they amount to together.
+class Groups {
+  public:
+    Groups(const Observations& observations, const FitResult& result) : result_(result) {
+        std::size_t first = 0;
+        for (const ResidualGroup& group : observations.groups()) {
+            first_.push_back(first);
+            first += static_cast<std::size_t>(group.residuals);
+        }
+        first_.push_back(first);
     }
+    std::span<const double> of(std::size_t group) const {
+        return std::span(result_.residuals)
+            .subspan(first_[group], first_[group + 1] - first_[group]);
+    }
+    double squares(std::size_t group) const {
+        double sum = 0;
+        for (const double residual : of(group)) sum += residual * residual;
+        return sum;
+    }
+    std::size_t size() const { return first_.size() - 1; }
+
+  private:
+    const FitResult& result_;
+    std::vector<std::size_t> first_;
 };
 
-std::vector<ImageSummary> summaries(const PointResiduals& points, const FitResult& result) {
-    std::vector<ImageSummary> images(points.seen().images.size());
-    for (std::size_t i = 0; i < points.seen().points.size(); ++i) {
-        ImageSummary& image = images[points.seen().points[i].image];
-        ++image.points;
+struct ImageSummary {
+    std::size_t groups = 0, outliers = 0, residuals = 0;
+    double squares = 0;
+};
+
+std::vector<ImageSummary> summaries(const Observations& observations, const FitResult& result) {
+    std::vector<ImageSummary> images(observations.images().size());
+    const Groups groups(observations, result);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        ImageSummary& image = images[observations.place(i).image];
+        ++image.groups;
         if (result.outliers[i]) {
             ++image.outliers;
             continue;
         }
-        const double length = length_of(result, i);
-        image.squares += length * length;
-        image.greatest = std::max(image.greatest, length);
+        image.squares += groups.squares(i);
+        image.residuals += groups.of(i).size();
     }
     return images;
 }
 
-/// Of a point, in both coordinates together.
-double of_points(double per_coordinate) {
-    return std::numbers::sqrt2 * per_coordinate;
-}
-
-std::string summary_line(const PointResiduals& points, const FitResult& result) {
-    const auto outliers = static_cast<std::size_t>(std::ranges::count(result.outliers, true));
-    std::string line = fmt::format("{} in {}: RMS {:.4g} px, {:.4g} px at the start",
-                                   counted(result.outliers.size(), "point"),
-                                   counted(points.seen().images.size(), "image"),
-                                   of_points(result.rms), of_points(result.rms_at_start));
-    if (outliers > 0)
-        line += fmt::format("; {} left out, {:.4g} px with them", counted(outliers, "outlier"),
-                            of_points(result.rms_with_outliers));
-    return line;
+double rms_of(const ImageSummary& image, const Observations& observations) {
+    if (image.residuals == 0) return 0;
+    return observations.of_group(std::sqrt(image.squares / static_cast<double>(image.residuals)));
 }
 
 }  // namespace
@@ -99,7 +107,7 @@ std::vector<std::string> doubts(const FitResult& result) {
     for (const FreeDirection& direction : result.free_directions) {
         const std::string certain =
             std::isfinite(direction.error)
-                ? fmt::format("to {:.2g} times their size at best", direction.error)
+                ? fmt::format("to better than {:.2g} times their size", direction.error)
                 : "at all";
         if (direction.unknowns.size() == 1) {
             all.push_back(
@@ -112,9 +120,9 @@ std::vector<std::string> doubts(const FitResult& result) {
         for (const std::size_t i : direction.unknowns) names.push_back(name_of(i));
         const std::string last = names.back();
         names.pop_back();
-        all.push_back(fmt::format(
-            "{} and {} cannot be told apart {}: leave one out, or give it a --prior.",
-            fmt::join(names, ", "), last, std::isfinite(direction.error) ? certain : "at all"));
+        all.push_back(
+            fmt::format("{} and {} cannot be told apart {}: leave one out, or give it a --prior.",
+                        fmt::join(names, ", "), last, certain));
     }
     const std::size_t n = result.values.size();
     constexpr double k_strong = 0.95;
@@ -135,20 +143,41 @@ std::vector<std::string> doubts(const FitResult& result) {
     return all;
 }
 
-FitReport::FitReport(const PointResiduals& points, const FitResult& result)
-    : points_(points), result_(result) {}
+FitReport::FitReport(const Observations& observations, const PictureResiduals* pictures,
+                     const FitResult& result)
+    : observations_(observations), pictures_(pictures), result_(result) {}
+
+std::string FitReport::summary_line() const {
+    const auto outliers = static_cast<std::size_t>(std::ranges::count(result_.outliers, true));
+    const auto rms = [&](double per_number) {
+        return fmt::format("{:.4g} {}", observations_.of_group(per_number), observations_.unit());
+    };
+    std::string line = fmt::format("{} in {}: RMS {}, {} at the start",
+                                   counted(result_.outliers.size(), observations_.noun()),
+                                   counted(observations_.images().size(), "image"),
+                                   rms(result_.rms), rms(result_.rms_at_start));
+    if (pictures_ != nullptr)
+        line += fmt::format("; {:.2g} % of the light", 100 * pictures_->relative_rms(result_));
+    if (outliers > 0)
+        line += fmt::format("; {} left out, {} with them", counted(outliers, "outlier"),
+                            rms(result_.rms_with_outliers));
+    return line;
+}
 
 std::string FitReport::printed(bool as_json) const {
     Report report;
-    report.say(summary_line(points_, result_));
-    report.set({{"rms_px", of_points(result_.rms)},
-                {"rms_with_outliers_px", of_points(result_.rms_with_outliers)},
-                {"rms_at_start_px", of_points(result_.rms_at_start)},
-                {"deviation_px", result_.deviation},
+    report.say(summary_line());
+    report.set({{"observed", observations_.noun()},
+                {"unit", observations_.unit()},
+                {"rms", observations_.of_group(result_.rms)},
+                {"rms_with_outliers", observations_.of_group(result_.rms_with_outliers)},
+                {"rms_at_start", observations_.of_group(result_.rms_at_start)},
+                {"deviation", result_.deviation},
                 {"converged", result_.converged},
                 {"iterations", result_.iterations},
-                {"points", result_.outliers.size()},
+                {"observations", result_.outliers.size()},
                 {"outliers", std::ranges::count(result_.outliers, true)}});
+    if (pictures_ != nullptr) report.set({{"relative_rms", pictures_->relative_rms(result_)}});
     std::vector<Report> values;
     for (const FoundValue& found : result_.values) {
         Report value;
@@ -162,18 +191,18 @@ std::string FitReport::printed(bool as_json) const {
     }
     for (const std::string& row : aligned_rows(value_rows(result_), 1)) report.say(row);
     report.add("unknowns", values);
+    report.set({{"correlations", result_.correlations}});
     const std::vector<std::string> all_doubts = doubts(result_);
     for (const std::string& doubt : all_doubts) report.say(doubt);
     report.set({{"doubts", all_doubts}});
     std::vector<Report> images;
-    const std::vector<ImageSummary> all = summaries(points_, result_);
+    const std::vector<ImageSummary> all = summaries(observations_, result_);
     for (std::size_t i = 0; i < all.size(); ++i) {
         Report image;
-        image.set({{"name", points_.seen().images[i]},
-                   {"points", all[i].points},
+        image.set({{"name", observations_.images()[i]},
+                   {"observations", all[i].groups},
                    {"outliers", all[i].outliers},
-                   {"rms_px", all[i].rms()},
-                   {"greatest_px", all[i].greatest}});
+                   {"rms", rms_of(all[i], observations_)}});
         images.push_back(std::move(image));
     }
     report.add("images", images);
@@ -181,16 +210,119 @@ std::string FitReport::printed(bool as_json) const {
 }
 
 std::string FitReport::csv() const {
-    std::string text = "image,x,y,z,u,v,du,dv,outlier\n";
-    for (std::size_t i = 0; i < points_.seen().points.size(); ++i) {
-        const SeenPoint& point = points_.seen().points[i];
-        text +=
-            fmt::format("{},{:.9g},{:.9g},{:.9g},{:.9g},{:.9g},{:.6g},{:.6g},{}\n",
-                        csv_text(points_.seen().images[point.image]), point.point.x, point.point.y,
-                        point.point.z, point.seen.x, point.seen.y, result_.residuals[2 * i],
-                        result_.residuals[2 * i + 1], result_.outliers[i] ? 1 : 0);
+    const Groups groups(observations_, result_);
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < groups.size(); ++i) most = std::max(most, groups.of(i).size());
+    std::string text = "image,u,v";
+    for (std::size_t k = 0; k < most; ++k) text += fmt::format(",residual_{}", k);
+    text += ",outlier\n";
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const Observations::Place place = observations_.place(i);
+        text += fmt::format("{},{:.9g},{:.9g}", csv_text(observations_.images()[place.image]),
+                            place.at.x, place.at.y);
+        for (const double residual : groups.of(i)) text += fmt::format(",{:.6g}", residual);
+        text += result_.outliers[i] ? ",1\n" : ",0\n";
     }
     return text;
+}
+
+/// Residual vectors of points, by their components and where they are in the image.
+std::string FitReport::residual_figure() const {
+    PlotFigure figure;
+    figure.title = "Residuals";
+    figure.caption = {
+        "Left: where a point is predicted less where it was seen. Right: from where it was seen "
+        "in the image, 100 times as long. Orange: left out."};
+    PlotPanel scatter, arrows;
+    scatter.title = "By coordinate";
+    scatter.x.label = "du [px]";
+    scatter.y.label = "dv [px]";
+    arrows.title = "In the image";
+    arrows.x.label = "x [px]";
+    arrows.y.label = "height above the lowest point [px]";
+    PlotCurve kept, left_out;
+    kept.colour = plot_colour::k_blue;
+    left_out.colour = plot_colour::k_orange;
+    kept.width = left_out.width = 0;
+    kept.markers = left_out.markers = true;
+    PlotCurve lines;
+    lines.colour = plot_colour::k_blue;
+    lines.width = 1;
+    const Groups groups(observations_, result_);
+    double bottom = 0;
+    for (std::size_t i = 0; i < groups.size(); ++i)
+        bottom = std::max(bottom, observations_.place(i).at.y);
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        const std::span<const double> residual = groups.of(i);
+        PlotCurve& curve = result_.outliers[i] ? left_out : kept;
+        curve.x.push_back(residual[0]);
+        curve.y.push_back(residual[1]);
+        if (result_.outliers[i]) continue;
+        constexpr double k_enlarged = 100;
+        const ImagePoint at = observations_.place(i).at;
+        lines.x.insert(lines.x.end(), {at.x, at.x + k_enlarged * residual[0], std::nan("")});
+        lines.y.insert(lines.y.end(),
+                       {bottom - at.y, bottom - at.y - k_enlarged * residual[1], std::nan("")});
+    }
+    scatter.curves = {kept, left_out};
+    arrows.curves = {lines};
+    figure.panels = {scatter, arrows};
+    return svg_document(figure);
+}
+
+/// Pictures as seen, as predicted, and how they differ, side by side as squares of an SVG.
+std::string FitReport::picture_figures() const {
+    std::string html;
+    for (std::size_t i = 0; i < observations_.images().size(); ++i) {
+        const PictureResiduals::Comparison comparison = pictures_->comparison(i);
+        double brightest = 0, mean = 0, count = 0;
+        for (const auto& colours : comparison.seen)
+            for (const double value : colours)
+                if (std::isfinite(value)) {
+                    brightest = std::max(brightest, value);
+                    mean += value;
+                    count += 1;
+                }
+        if (!(brightest > 0)) continue;
+        mean /= count;
+        html += fmt::format(
+            "<h3>{}</h3>\n<p>Seen, predicted, and predicted less seen: grey "
+            "where they agree, 10 % of the mean at black and white.</p>\n",
+            xml_escaped(observations_.images()[i]));
+        const auto add = [&](const auto& shade) {
+            html += fmt::format("<svg viewBox=\"0 0 {} {}\" width=310 shape-rendering=crispEdges>",
+                                comparison.width, comparison.height);
+            for (int y = 0; y < comparison.height; ++y)
+                for (int x = 0; x < comparison.width; ++x) {
+                    const auto index =
+                        static_cast<std::size_t>(y) * static_cast<std::size_t>(comparison.width) +
+                        static_cast<std::size_t>(x);
+                    std::string colour = "#";
+                    for (std::size_t k = 0; k < 3; ++k) {
+                        const double value = shade(index, k);
+                        colour +=
+                            std::isfinite(value)
+                                ? fmt::format("{:02x}", std::clamp(static_cast<int>(value), 0, 255))
+                                : std::string(k == 0 ? "60" : "30");
+                    }
+                    html += fmt::format("<rect x={} y={} width=1 height=1 fill={}/>", x, y, colour);
+                }
+            html += "</svg>\n";
+        };
+        const auto encoded = [&](double value) {
+            return std::isfinite(value) ? 255 * srgb_encode(value / brightest) : value;
+        };
+        add([&](std::size_t index, std::size_t k) { return encoded(comparison.seen[index][k]); });
+        add([&](std::size_t index, std::size_t k) {
+            return encoded(comparison.predicted[index][k]);
+        });
+        add([&](std::size_t index, std::size_t k) {
+            constexpr double k_shown = 0.1;
+            return 128 + 127 * (comparison.predicted[index][k] - comparison.seen[index][k]) /
+                             (k_shown * mean);
+        });
+    }
+    return html;
 }
 
 std::string FitReport::page(const std::string& scene) const {
@@ -212,64 +344,26 @@ std::string FitReport::page(const std::string& scene) const {
         "0}}td,th{{padding:.15em .8em;border-bottom:1px solid "
         "#ddd;text-align:left}}td.n{{text-align:right;white-space:nowrap;"
         "font-variant-numeric:tabular-nums}}</style>\n<h1>Fit of {0}</h1>\n<p>{1}.</p>\n",
-        xml_escaped(scene), xml_escaped(summary_line(points_, result_)));
+        xml_escaped(scene), xml_escaped(summary_line()));
     html += "<h2>What was found</h2>\n" + table(value_rows(result_));
     html += fmt::format(
-        "<p>Errors are standard errors, from how the residuals of these {} spread ({:.3g} px per "
-        "coordinate).</p>\n",
-        counted(result_.outliers.size(), "point"), result_.deviation);
+        "<p>Errors are standard errors, from how the residuals spread ({:.3g} {}).</p>\n",
+        result_.deviation, observations_.unit());
     const std::vector<std::string> all_doubts = doubts(result_);
     html += "<h2>What these observations cannot tell</h2>\n";
     if (all_doubts.empty()) html += "<p>Each unknown is determined by itself.</p>\n";
     for (const std::string& doubt : all_doubts)
         html += fmt::format("<p>{}</p>\n", xml_escaped(doubt));
-
-    PlotFigure figure;
-    figure.title = "Residuals";
-    figure.caption = {
-        "Left: where a point is predicted less where it was seen. Right: from where it was seen "
-        "in the image, 100 times as long. Orange: left out."};
-    PlotPanel scatter, arrows;
-    scatter.title = "By coordinate";
-    scatter.x.label = "du [px]";
-    scatter.y.label = "dv [px]";
-    arrows.title = "In the image";
-    arrows.x.label = "x [px]";
-    arrows.y.label = "height above the image's bottom [px]";
-    PlotCurve kept, left_out;
-    kept.colour = plot_colour::k_blue;
-    left_out.colour = plot_colour::k_orange;
-    kept.width = left_out.width = 0;
-    kept.markers = left_out.markers = true;
-    PlotCurve lines;
-    lines.colour = plot_colour::k_blue;
-    lines.width = 1;
-    double bottom = 0;
-    for (const SeenPoint& point : points_.seen().points) bottom = std::max(bottom, point.seen.y);
-    for (std::size_t i = 0; i < points_.seen().points.size(); ++i) {
-        const double du = result_.residuals[2 * i], dv = result_.residuals[2 * i + 1];
-        PlotCurve& curve = result_.outliers[i] ? left_out : kept;
-        curve.x.push_back(du);
-        curve.y.push_back(dv);
-        if (result_.outliers[i]) continue;
-        constexpr double k_enlarged = 100;
-        const ImagePoint& seen = points_.seen().points[i].seen;
-        lines.x.insert(lines.x.end(), {seen.x, seen.x + k_enlarged * du, std::nan("")});
-        lines.y.insert(lines.y.end(),
-                       {bottom - seen.y, bottom - seen.y - k_enlarged * dv, std::nan("")});
-    }
-    scatter.curves = {kept, left_out};
-    arrows.curves = {lines};
-    figure.panels = {scatter, arrows};
-    html += "<h2>Residuals</h2>\n" + svg_document(figure);
-
-    std::vector<std::vector<std::string>> rows{
-        {"image", "points", "left out", "RMS [px]", "greatest [px]"}};
-    const std::vector<ImageSummary> images = summaries(points_, result_);
+    html += "<h2>Residuals</h2>\n";
+    html += pictures_ != nullptr ? picture_figures() : residual_figure();
+    std::vector<std::vector<std::string>> rows{{"image", fmt::format("{}s", observations_.noun()),
+                                                "left out",
+                                                fmt::format("RMS [{}]", observations_.unit())}};
+    const std::vector<ImageSummary> images = summaries(observations_, result_);
     for (std::size_t i = 0; i < images.size(); ++i)
-        rows.push_back({points_.seen().images[i], std::to_string(images[i].points),
-                        std::to_string(images[i].outliers), fmt::format("{:.3f}", images[i].rms()),
-                        fmt::format("{:.3f}", images[i].greatest)});
+        rows.push_back({observations_.images()[i], std::to_string(images[i].groups),
+                        std::to_string(images[i].outliers),
+                        fmt::format("{:.3f}", rms_of(images[i], observations_))});
     html += table(rows);
     html += fmt::format("<p>uwvdb {}</p>\n</html>\n", xml_escaped(program_version()));
     return html;

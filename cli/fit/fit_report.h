@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cli/report.h"
-#include "fit/point_residuals.h"
+#include "fit/picture_residuals.h"
 #include "fit/robust_fit.h"
 
 namespace uw {
@@ -12,16 +12,24 @@ namespace uw {
 /// What a fit found, for people and programs. Refers to both, which outlive it.
 class FitReport {
   public:
-    FitReport(const PointResiduals& points, const FitResult& result);
+    /// `pictures`: the observations, if they are of pictures; else null.
+    FitReport(const Observations& observations, const PictureResiduals* pictures,
+              const FitResult& result);
 
     std::string printed(bool as_json) const;
     /// A self-contained page: values, what cannot be told, residuals.
     std::string page(const std::string& scene) const;
-    /// A row per point: image, x, y, z, u, v, the residual in pixels, and whether it was left out.
+    /// A row per point or cell: its image, where it is there [pixels], its residuals, and whether
+    /// it was left out.
     std::string csv() const;
 
   private:
-    const PointResiduals& points_;
+    std::string summary_line() const;
+    std::string residual_figure() const;
+    std::string picture_figures() const;
+
+    const Observations& observations_;
+    const PictureResiduals* pictures_;
     const FitResult& result_;
 };
 

@@ -1,0 +1,409 @@
+#include "fit/picture_residuals.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "camera/camera.h"
+#include "core/base/error.h"
+#include "core/base/input_files.h"
+#include "core/base/parallel.h"
+#include "core/base/text.h"
+#include "core/geometry/mesh.h"
+#include "core/image/camera_sensor.h"
+#include "core/image/image_file.h"
+#include "render/scene_loading.h"
+
+namespace uw {
+
+namespace {
+
+/// What a prediction may be off by for reasons of its own: shadows and tables are exact to about
+/// that at a scene's usual quality.
+constexpr double k_model_error = 1e-3;
+
+void refuse_developed(const SensorDesc& sensor) {
+    if (sensor.image.is_raw) return;
+    throw InputError(fmt::format(
+        "{}: its images are developed, and raw numbers are compared; take camera.sensor.image "
+        "out and give raw pictures, or take camera.sensor out and give pictures of light",
+        sensor.where));
+}
+
+/// The number that a raw picture's values of 1 stand for: its bits are the uppermost of a byte or
+/// of two [DN].
+double number_of_one(const SensorDesc& sensor) {
+    const int bits = sensor.bit_depth <= 8 ? 8 : 16;
+    return static_cast<double>((1 << bits) - 1) / (1 << (bits - sensor.bit_depth));
+}
+
+/// A picture's pixels as what is compared: light, or a sensor's numbers.
+class Values {
+  public:
+    Values(PixelImage image, const std::optional<SensorDesc>& sensor)
+        : image_(std::move(image)), sensor_(sensor) {}
+
+    /// The colour `k` of a pixel; none where the pixel's filter is of another.
+    std::optional<double> at(int x, int y, std::size_t k) const {
+        const bool is_grey = image_.channels < 3;
+        if (sensor_ && is_bayer(sensor_->mosaic) && colour_at(sensor_->mosaic, x, y) != k)
+            return std::nullopt;
+        const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
+                           static_cast<std::size_t>(x);
+        const double value =
+            image_.pixels[index * static_cast<std::size_t>(image_.channels) + (is_grey ? 0 : k)];
+        if (sensor_) return value * number_of_one(*sensor_);
+        return image_.is_linear ? value : linear_from_srgb(value);
+    }
+    /// From where on a pixel may be white, whatever it sees.
+    double white() const {
+        constexpr double k_nearly = 0.995;
+        if (sensor_) {
+            const double well = sensor_->full_well ? sensor_->system_gain() * *sensor_->full_well +
+                                                         sensor_->black_level
+                                                   : sensor_->white_level();
+            return k_nearly * std::min(well, sensor_->white_level());
+        }
+        return image_.is_linear ? std::numeric_limits<double>::infinity() : k_nearly;
+    }
+
+    /// The variance of a sensor's number around its mean `number`, as EMVA 1288 has it; none if it
+    /// is not known.
+    std::optional<double> variance(double number) const {
+        if (!sensor_) return std::nullopt;
+        const double gain = sensor_->system_gain();
+        const double signal = std::max(0.0, number - sensor_->black_level);
+        const double shot = sensor_->shot_noise ? gain * signal : 0;
+        const double dark = std::hypot(sensor_->read_noise, sensor_->dsnu) * gain;
+        constexpr double k_rounding = 1.0 / 12;
+        return shot + dark * dark + std::pow(sensor_->prnu * signal, 2) + k_rounding;
+    }
+
+  private:
+    PixelImage image_;
+    const std::optional<SensorDesc>& sensor_;
+};
+
+/// What a sensor's raw numbers are in the mean, before they are rounded.
+class MeanNumbers {
+  public:
+    /// `scene`: with the camera's full resolution.
+    explicit MeanNumbers(const SceneDesc& scene)
+        : electrons_(scene), sensor_(*scene.camera.sensor) {}
+
+    double at(const Spectrum& irradiance, std::size_t colour) const {
+        double electrons =
+            electrons_.mean(irradiance, colour) + sensor_.dark_current * sensor_.exposure.value();
+        if (sensor_.full_well) electrons = std::min(electrons, *sensor_.full_well);
+        return sensor_.system_gain() * electrons + sensor_.black_level;
+    }
+    double factor(const LensRay& ray, double focus_vergence) const {
+        return electrons_.irradiance_factor(ray, focus_vergence);
+    }
+
+  private:
+    Photoelectrons electrons_;
+    SensorDesc sensor_;
+};
+
+PixelImage read_picture(const std::filesystem::path& file) {
+    const std::string ending = file.extension().string();
+    const bool holds_light = ending == ".exr" || ending == ".hdr" || ending == ".EXR";
+    return holds_light ? read_linear_image(file) : read_image(file);
+}
+
+}  // namespace
+
+std::vector<ObservedPicture> pictures_called(const std::filesystem::path& name) {
+    if (!has_frame_pattern(name.string())) return {{name, {}}};
+    std::vector<ObservedPicture> pictures;
+    for (const int frame : frames_found(name))
+        pictures.push_back({file_of_frame(name, frame), {frame, 0}});
+    if (pictures.empty())
+        throw IoError(fmt::format("{}: there is no such picture for any frame; check the name",
+                                  name.string()));
+    return pictures;
+}
+
+PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
+                                   std::vector<ObservedPicture> files, int cells)
+    : unknowns_(unknowns), files_(std::move(files)) {
+    std::vector<double> start;
+    for (const SceneUnknown& unknown : unknowns_.all()) start.push_back(unknown.start);
+    const SceneDesc scene = unknowns_.scene(start);
+    if (scene.camera.sensor) {
+        refuse_developed(*scene.camera.sensor);
+        colours_ = colour_count(scene.camera.sensor->mosaic);
+    }
+    width_ = std::min(cells, scene.camera.width);
+    cell_side_ = static_cast<double>(scene.camera.width) / width_;
+    height_ = std::max(1, static_cast<int>(std::lround(scene.camera.height / cell_side_)));
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+        names_.push_back(files_[i].file.filename().string());
+        renderers_.emplace_back();
+        read(i, scene);
+    }
+    const std::size_t all =
+        files_.size() * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    constexpr double k_least_share = 0.01;
+    if (static_cast<double>(cells_.size()) < k_least_share * static_cast<double>(all))
+        throw InputError(fmt::format(
+            "the pictures have next to nothing to compare: {} of {} cells are neither black nor "
+            "white; expose them so that what matters is grey",
+            cells_.size(), all));
+}
+
+void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
+    const std::filesystem::path& file = files_[picture].file;
+    PixelImage image = read_picture(file);
+    if (image.width != scene.camera.width || image.height != scene.camera.height)
+        throw InputError(fmt::format(
+            "{}: is {} x {} pixels, and the scene's camera {} x {}; set camera.resolution and "
+            "camera.intrinsics to the picture's",
+            file.string(), image.width, image.height, scene.camera.width, scene.camera.height));
+    if (scene.camera.sensor &&
+        (value_count(scene.camera.sensor->mosaic) == 3) != (image.channels >= 3))
+        throw InputError(fmt::format(
+            "{}: has {}, which the scene's sensor does not store; check camera.sensor.mosaic",
+            file.string(), counted(static_cast<std::size_t>(image.channels), "channel")));
+    if (!scene.camera.sensor && image.channels < 3) colours_ = 1;
+    const Values values(std::move(image), scene.camera.sensor);
+    const double white = values.white();
+    std::vector<std::optional<Cell>> found(static_cast<std::size_t>(width_) *
+                                           static_cast<std::size_t>(height_));
+    const auto edge = [](int index, int count, int pixels) {
+        return static_cast<int>(std::lround(static_cast<double>(index) * pixels / count));
+    };
+    parallel_for(found.size(), [&](std::size_t index) {
+        Cell cell{
+            picture, static_cast<int>(index) % width_, static_cast<int>(index) / width_, {}, {}};
+        const int x0 = edge(cell.x, width_, scene.camera.width),
+                  x1 = edge(cell.x + 1, width_, scene.camera.width),
+                  y0 = edge(cell.y, height_, scene.camera.height),
+                  y1 = edge(cell.y + 1, height_, scene.camera.height);
+        for (std::size_t k = 0; k < colours_; ++k) {
+            double count = 0, sum = 0, squares = 0, least = 1e300, most = -1e300;
+            for (int y = y0; y < y1; ++y)
+                for (int x = x0; x < x1; ++x)
+                    if (const std::optional<double> value = values.at(x, y, k)) {
+                        if (!(*value < white) || !std::isfinite(*value)) return;
+                        count += 1;
+                        sum += *value;
+                        squares += *value * *value;
+                        least = std::min(least, *value);
+                        most = std::max(most, *value);
+                    }
+            if (count == 0) return;
+            cell.mean[k] = sum / count;
+            double variance = most > least && count > 1
+                                  ? std::max(0.0, (squares - sum * cell.mean[k]) / (count - 1))
+                                  : 0;
+            // Of few pixels the scatter is known badly: what scatters as noise does, is noise.
+            constexpr double k_like_noise = 4;
+            const std::optional<double> noise = values.variance(cell.mean[k]);
+            if (noise && variance < k_like_noise * *noise) variance = *noise;
+            cell.error[k] = std::sqrt(variance / count + std::pow(k_model_error * cell.mean[k], 2));
+        }
+        found[index] = cell;
+    });
+    double brightest = 0;
+    for (const std::optional<Cell>& cell : found)
+        if (cell) brightest = std::max(brightest, *std::ranges::max_element(cell->mean));
+    for (std::optional<Cell>& cell : found) {
+        if (!cell || !(brightest > 0)) continue;
+        // Where all is dark, nothing is known to better than what the bright parts are known to.
+        for (double& error : cell->error)
+            error = std::hypot(error, 0.1 * k_model_error * brightest);
+        cells_.push_back(*cell);
+    }
+}
+
+PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> values) {
+    const SceneDesc scene = unknowns_.scene(values);
+    Prediction prediction(cells_.size());
+    std::size_t next = 0;
+    for (std::size_t picture = 0; picture < files_.size(); ++picture) {
+        throw_if_stopped();
+        const ImageScene whole = scene_of_image(scene, files_[picture].choice);
+        Renderer& renderer = renderers_[picture];
+        renderer.set_scene(
+            whole.with([&](SceneDesc& desc) { resize_image(desc.camera, width_, height_); }));
+        RenderOptions options;
+        options.layers = "total";
+        const Film& film = renderer.render(options);
+        const LayerPlan plan = layer_plan(renderer.scene(), options.layers);
+        std::optional<MeanNumbers> numbers;
+        if (whole.desc().camera.sensor) numbers.emplace(whole.desc());
+        const Camera camera(renderer.scene().desc().camera);
+        for (; next < cells_.size() && cells_[next].picture == picture; ++next) {
+            const Cell& cell = cells_[next];
+            const std::span<const float> pixel = film.pixel(cell.x, cell.y);
+            Colours& colours = prediction[next];
+            if (numbers) {
+                const double factor = numbers->factor(camera.lens_ray(cell.x + 0.5, cell.y + 0.5),
+                                                      camera.focus_vergence());
+                // Three bands are red, green and blue themselves.
+                const std::size_t first =
+                    plan.has(Layer::total)
+                        ? static_cast<std::size_t>(plan.first_channel(Layer::total))
+                        : k_red;
+                Spectrum irradiance;
+                for (std::size_t b = 0; b < plan.band_count(); ++b)
+                    irradiance[b] = factor * double{pixel[first + b]};
+                for (std::size_t k = 0; k < colours_; ++k) colours[k] = numbers->at(irradiance, k);
+            } else if (colours_ == 1) {
+                colours[0] = (double{pixel[0]} + double{pixel[1]} + double{pixel[2]}) / 3;
+            } else {
+                for (std::size_t k = 0; k < colours_; ++k) colours[k] = double{pixel[k]};
+            }
+        }
+    }
+    return prediction;
+}
+
+void PictureResiduals::move_groups(std::span<const double> shared) {
+    if (moved_.empty()) {
+        moved_.resize(shared.size());
+        together_.resize(shared.size());
+        for (std::size_t i = 0; i < shared.size(); ++i) {
+            moved_[i].group = i;
+            together_[i].unknowns = {i};
+        }
+    }
+    // Light is interpolated, so that small steps would measure the tables; of larger ones central
+    // differences are off by the square, 1e-4.
+    constexpr double k_step = 1e-2;
+    for (Together& group : together_) {
+        std::vector<double> back(shared.begin(), shared.end()), ahead = back;
+        for (const std::size_t i : group.unknowns) {
+            const SceneUnknown& unknown = unknowns_.all()[i];
+            back[i] = std::max(shared[i] - k_step * unknown.scale, unknown.lower);
+            ahead[i] = std::min(shared[i] + k_step * unknown.scale, unknown.upper);
+            moved_[i].step = ahead[i] - back[i];
+        }
+        group.back = predict(back);
+        group.ahead = predict(ahead);
+    }
+}
+
+void PictureResiduals::group_unknowns() {
+    is_grouped_ = true;
+    std::vector<Together> groups;
+    std::vector<std::array<bool, 3>> taken;  // per group
+    for (std::size_t i = 0; i < moved_.size(); ++i) {
+        const Together& alone = together_[i];
+        for (std::size_t k = 0; k < moved_[i].colours.size(); ++k) {
+            moved_[i].colours[k] = false;
+            for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+                if (alone.back[cell][k] != alone.ahead[cell][k]) moved_[i].colours[k] = true;
+        }
+        const auto overlaps = [&](const std::array<bool, 3>& other) {
+            for (std::size_t k = 0; k < other.size(); ++k)
+                if (other[k] && moved_[i].colours[k]) return true;
+            return false;
+        };
+        const auto place = std::ranges::find_if_not(taken, overlaps);
+        const auto group = static_cast<std::size_t>(place - taken.begin());
+        if (place == taken.end()) {
+            groups.push_back(alone);
+            taken.push_back(moved_[i].colours);
+        } else {
+            Together& shared = groups[group];
+            shared.unknowns.push_back(i);
+            for (std::size_t k = 0; k < place->size(); ++k) {
+                if (!moved_[i].colours[k]) continue;
+                (*place)[k] = true;
+                for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
+                    shared.back[cell][k] = alone.back[cell][k];
+                    shared.ahead[cell][k] = alone.ahead[cell][k];
+                }
+            }
+        }
+        moved_[i].group = group;
+    }
+    together_ = std::move(groups);
+}
+
+bool PictureResiduals::prepare(std::span<const double> shared, bool with_derivatives) {
+    const bool is_same = std::ranges::equal(shared, prepared_);
+    if (is_same && (has_derivatives_ || !with_derivatives)) return true;
+    try {
+        if (!is_same) prediction_ = predict(shared);
+        prepared_.assign(shared.begin(), shared.end());
+        has_derivatives_ = false;
+        if (!with_derivatives) return true;
+        move_groups(shared);
+        if (!is_grouped_) group_unknowns();
+        has_derivatives_ = true;
+        return true;
+    } catch (const InputError&) {
+        prepared_.clear();
+        return false;  // no such scene: the solver takes a smaller step
+    }
+}
+
+bool PictureResiduals::evaluate(std::size_t group, const Block* /*block*/, double* residuals,
+                                double* by_shared, double* /*by_block*/) const {
+    const Cell& cell = cells_[group];
+    for (std::size_t k = 0; k < colours_; ++k) {
+        const double error = cell.error[k] * deviation();
+        residuals[k] = (prediction_[group][k] - cell.mean[k]) / error;
+        if (by_shared == nullptr) continue;
+        for (std::size_t i = 0; i < moved_.size(); ++i) {
+            const Together& moved = together_[moved_[i].group];
+            by_shared[k * moved_.size() + i] =
+                moved_[i].colours[k]
+                    ? (moved.ahead[group][k] - moved.back[group][k]) / (moved_[i].step * error)
+                    : 0;
+        }
+    }
+    return true;
+}
+
+std::vector<ResidualGroup> PictureResiduals::groups() const {
+    return std::vector<ResidualGroup>(cells_.size(), {static_cast<int>(colours_)});
+}
+
+Observations::Place PictureResiduals::place(std::size_t group) const {
+    const Cell& cell = cells_[group];
+    return {cell.picture, {(cell.x + 0.5) * cell_side_, (cell.y + 0.5) * cell_side_}};
+}
+
+double PictureResiduals::relative_rms(const FitResult& result) const {
+    double squares = 0, sum = 0, count = 0;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        if (result.outliers[i]) continue;
+        for (std::size_t k = 0; k < colours_; ++k) {
+            const double residual = result.residuals[i * colours_ + k] * cells_[i].error[k];
+            squares += residual * residual;
+            sum += cells_[i].mean[k];
+            count += 1;
+        }
+    }
+    return sum > 0 ? std::sqrt(squares / count) / (sum / count) : 0;
+}
+
+PictureResiduals::Comparison PictureResiduals::comparison(std::size_t picture) const {
+    constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
+    Comparison comparison{width_, height_, {}, {}};
+    const auto size = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    comparison.seen.assign(size, {k_none, k_none, k_none});
+    comparison.predicted = comparison.seen;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        const Cell& cell = cells_[i];
+        if (cell.picture != picture) continue;
+        const auto index = static_cast<std::size_t>(cell.y) * static_cast<std::size_t>(width_) +
+                           static_cast<std::size_t>(cell.x);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t colour = std::min(k, colours_ - 1);
+            comparison.seen[index][k] = cell.mean[colour];
+            comparison.predicted[index][k] = prediction_[i][colour];
+        }
+    }
+    return comparison;
+}
+
+}  // namespace uw

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <deque>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene_desc.h"
+#include "fit/robust_fit.h"
+#include "fit/unknowns.h"
+#include "render/renderer.h"
+
+namespace uw {
+
+/// Photographs of which a scene predicts the light.
+
+/// A picture, and the image of the scene that it shows.
+struct ObservedPicture {
+    std::filesystem::path file;
+    ImageChoice choice;
+};
+
+/// The pictures that a name stands for: a file, or, with a pattern for the frame's number
+/// ("dive/%04d.png"), those of all frames. Throws IoError if there are none.
+std::vector<ObservedPicture> pictures_called(const std::filesystem::path& name);
+
+/// How far the light that a scene predicts is from that of pictures. Each picture is divided into
+/// cells; a group is the mean over a cell in each of its colours, and the residual is in units of
+/// what the mean may be off by: from the scatter of the cell's pixels, which is great where
+/// something has an edge (or, if it is no more than that, the noise that the scene's sensor has),
+/// and a thousandth of the light.
+///
+/// Scenes with a sensor predict its numbers as they are stored raw, from which the sensor's black
+/// level, gain, mosaic and efficiencies follow; other scenes red, green and blue, of pictures with
+/// linear values as they are, of others by the sRGB curve. Cells in which a pixel is white are left
+/// out.
+class PictureResiduals final : public Observations {
+  public:
+    /// `cells`: across a picture's width. `unknowns` outlive it. Throws InputError for pictures
+    /// that are not of the scene's resolution or have nothing to see, and for a sensor whose image
+    /// is developed; and throws as read_image and Renderer.
+    PictureResiduals(const SceneUnknowns& unknowns, std::vector<ObservedPicture> files, int cells);
+
+    bool prepare(std::span<const double> shared, bool with_derivatives) override;
+    bool evaluate(std::size_t group, const Block* block, double* residuals, double* by_shared,
+                  double* by_block) const override;
+    std::vector<ResidualGroup> groups() const override;
+    std::size_t block_count() const override { return 0; }
+
+    const std::vector<std::string>& images() const override { return names_; }
+    Place place(std::size_t group) const override;
+    const char* noun() const override { return "cell"; }
+    const char* unit() const override { return "of its scatter"; }
+    double of_group(double rms) const override { return rms; }
+
+    /// The RMS of prediction less observation over the mean of what was observed, for the cells
+    /// that `result` keeps.
+    double relative_rms(const FitResult& result) const;
+
+    /// A picture as it was seen and as the scene that was prepared last predicts it, in its cells.
+    struct Comparison {
+        int width = 0, height = 0;
+        std::vector<std::array<double, 3>> seen, predicted;  // NaN: left out
+    };
+    Comparison comparison(std::size_t picture) const;
+    std::size_t colours() const { return colours_; }
+
+  private:
+    /// The mean of a cell, by colour; grey ones have one.
+    using Colours = std::array<double, 3>;
+    struct Cell {
+        std::size_t picture = 0;
+        int x = 0, y = 0;  // in the divided picture
+        Colours mean{}, error{};
+    };
+    using Prediction = std::vector<Colours>;  // of each cell
+
+    void read(std::size_t picture, const SceneDesc& scene);
+    Prediction predict(std::span<const double> values);
+    void move_groups(std::span<const double> shared);
+    void group_unknowns();
+
+    const SceneUnknowns& unknowns_;
+    std::vector<ObservedPicture> files_;
+    std::vector<std::string> names_;
+    int width_ = 0, height_ = 0;  // of pictures, in cells
+    double cell_side_ = 1;        // [pixels]
+    std::size_t colours_ = 3;
+    std::vector<Cell> cells_;
+    std::deque<Renderer> renderers_;  // one per picture, which keeps what does not change
+    std::vector<double> prepared_;    // for which unknowns; empty: none
+    bool has_derivatives_ = false;
+    Prediction prediction_;
+    /// Unknowns that are moved together, as no colour depends on two of them: those of bands.
+    struct Together {
+        std::vector<std::size_t> unknowns;
+        Prediction back, ahead;
+    };
+    std::vector<Together> together_;
+    bool is_grouped_ = false;  // before, each unknown is moved by itself
+    /// Per unknown: the colours that depend on it, in which of together_ it is, and its step from
+    /// back to ahead.
+    struct Moved {
+        std::array<bool, 3> colours{true, true, true};
+        std::size_t group = 0;
+        double step = 0;
+    };
+    std::vector<Moved> moved_;
+};
+
+}  // namespace uw

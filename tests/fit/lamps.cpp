@@ -1,0 +1,42 @@
+// ctest labels: metamorphic slow
+// Lamps from raw pictures of a plane.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/base/json.h"
+#include "tests/support/fit_pictures.h"
+
+namespace uw::test {
+namespace {
+
+// As cameras store them: a mosaic's raw numbers with shot noise and pixels that differ by 1 %. Four
+// standard errors for ten numbers: less than one run in a thousand fails for no reason.
+TEST_F(FitPictures, LampsFromRawNumbers) {
+    take_pictures(k_raw_sensor);
+    const Json found = fit("dive_%02d.sensor.png", "lamps.*.position,lamps.*.direction",
+                           {"lamps.left.position=[-0.5, 0, 0]", "lamps.left.direction=[0, 0, 1]",
+                            "lamps.right.position=[0.5, 0, 0]", "lamps.right.direction=[0, 0, 1]"});
+    EXPECT_TRUE(found.at("converged").get<bool>());
+    // The scatter of the cells says what their means may be off by.
+    EXPECT_NEAR(found.at("rms").get<double>(), 1, 0.1);
+    // A centimetre and a degree are what was asked of it.
+    expect_found(found,
+                 {{"lamps.left.position[0]", -0.6},
+                  {"lamps.left.position[1]", 0.1},
+                  {"lamps.left.position[2]", 0.1},
+                  {"lamps.right.position[0]", 0.55},
+                  {"lamps.right.position[1]", -0.1},
+                  {"lamps.right.position[2]", 0.2},
+                  {"lamps.left.direction (tilt 1)", std::atan(0.15) * 180 / 3.14159265358979},
+                  {"lamps.left.direction (tilt 2)", 0}},
+                 4, 0);
+    for (const Json& unknown : found.at("unknowns"))
+        EXPECT_LT(unknown.at("error").get<double>(), unknown.at("unit") == "deg" ? 1.0 : 0.01)
+            << unknown.dump();
+}
+
+}  // namespace
+}  // namespace uw::test
