@@ -8,22 +8,17 @@
 
 namespace uw {
 
-namespace {
-
-template <class Function>
-Function& function_of_module(const char* symbol) {
+void* address_in_fitting(const char* symbol) {
     const ModuleFunction found = load_function(least_squares_module::k_name, symbol);
     if (found.address == nullptr)
         throw UsageError(
             fmt::format("fitting needs Ceres and OpenCV ({}); install the package uwvdb-fitting{}",
                         found.fault, see_troubleshooting("Installing")));
-    return *reinterpret_cast<Function*>(found.address);
+    return found.address;
 }
 
-}  // namespace
-
 LeastSquaresOutcome solve_least_squares(ResidualFunction& function, LeastSquaresProblem& problem) {
-    auto& solve = function_of_module<least_squares_module::Solve>(least_squares_module::k_solve);
+    auto& solve = function_of_fitting<least_squares_module::Solve>(least_squares_module::k_solve);
     LeastSquaresOutcome outcome;
     std::exception_ptr fault;
     solve(function, problem, outcome, fault);
@@ -32,14 +27,14 @@ LeastSquaresOutcome solve_least_squares(ResidualFunction& function, LeastSquares
 }
 
 EigenSystem symmetric_eigen_system(std::span<const double> matrix) {
-    auto& solve = function_of_module<least_squares_module::Eigen>(least_squares_module::k_eigen);
+    auto& solve = function_of_fitting<least_squares_module::Eigen>(least_squares_module::k_eigen);
     EigenSystem system;
     solve(matrix, system);
     return system;
 }
 
 std::vector<RigidMatrix> poses_from_points(const SeenPoints& seen) {
-    auto& find = function_of_module<least_squares_module::Poses>(least_squares_module::k_poses);
+    auto& find = function_of_fitting<least_squares_module::Poses>(least_squares_module::k_poses);
     std::vector<RigidMatrix> poses;
     find(seen, poses);
     return poses;

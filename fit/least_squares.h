@@ -97,6 +97,13 @@ using RigidMatrix = std::array<double, 12>;
 /// UsageError as above.
 std::vector<RigidMatrix> poses_from_points(const SeenPoints& seen);
 
+/// A function that the module exports under this name. Throws UsageError if it is not there.
+void* address_in_fitting(const char* symbol);
+template <class Function>
+Function& function_of_fitting(const char* symbol) {
+    return *reinterpret_cast<Function*>(address_in_fitting(symbol));
+}
+
 /// What the module exports: each puts what it is left with into `fault`.
 namespace least_squares_module {
 inline constexpr const char* k_name = "uwvdb_fitting";

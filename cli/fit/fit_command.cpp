@@ -19,6 +19,7 @@
 #include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "edit/document/scene_text.h"
+#include "fit/board_corners.h"
 #include "fit/picture_residuals.h"
 #include "fit/point_residuals.h"
 #include "fit/robust_fit.h"
@@ -32,6 +33,8 @@ const char* const k_fit_examples = R"(Examples:
   uwvdb fit rig.yaml --points corners.csv --unknown camera.port.distance,camera.port.normal
   uwvdb fit rig.yaml --points corners.csv --unknown camera.port.thickness \
         --prior camera.port.thickness=0.01+-0.0005 -o fitted.yaml --report fit.html
+  uwvdb fit rig.yaml --images 'boards/%03d.png' --board 9x6x0.03 --corners corners.csv \
+        --unknown camera.port.distance,camera.port.normal
   uwvdb fit dive.yaml --images 'dive/%04d.png' -o fitted.yaml \
         --unknown water.absorption,water.scattering.b,lamps.*.intensity
 
@@ -39,7 +42,8 @@ Finds numbers of a scene, each with its standard error, by robust least squares,
 observations cannot tell. CORNERS.csv has the columns image, x, y, z, u, v and perhaps medium: the
 points of boards or other rigid things [m], in axes that all points of an image share, and where
 the image shows them [pixels; the image's corner is (0, 0)], in water, in air beyond the same port,
-or bare, without a port. Poses are found with the rest. Pictures are held against the images of the
+or bare, without a port. Poses are found with the rest. With --board OpenCV finds the corners of a
+checkerboard in photographs. Without, pictures are held against the images of the
 scene, frame by frame, cell by cell: raw numbers if its camera has a sensor, else light (OpenEXR) or
 what sRGB makes of it (PNG, JPEG).
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
@@ -66,7 +70,8 @@ Assumption read_assumption(const std::string& option, const std::string& text,
 }
 
 struct FitArguments {
-    std::filesystem::path scene, points, images, output, page, csv;
+    std::filesystem::path scene, points, images, corners, output, page, csv;
+    std::optional<BoardDesc> board;
     std::vector<std::string> overrides, unknowns;
     std::vector<Assumption> priors, bounds;
     int cells = 64, starts = 1;
@@ -83,6 +88,12 @@ Options fit_options(FitArguments& a) {
     options.path("--points", "CORNERS.csv", a.points, "points, and where images show them");
     options.path("--images", "PICTURE", a.images,
                  "photographs of the scene; %04d is the frame's number");
+    options.parsed(
+        "--board", "COLUMNSxROWSxSIDE",
+        [&a](const std::string& text) { a.board = read_board(text); },
+        "the photographs show a checkerboard with so many inner corners, whose squares have this "
+        "side [m]: its corners are what is observed");
+    options.path("--corners", "FILE.csv", a.corners, "write the corners found with --board");
     options.integer("--cells", "N", a.cells, 4, 4096,
                     "cells across a picture whose mean light is compared");
     Option& unknown = options.parsed(
@@ -177,6 +188,10 @@ std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
 void run_fit(const FitArguments& a) {
     if (a.points.empty() == a.images.empty())
         throw UsageError("give either --points, a table of corners, or --images, photographs");
+    if (a.board && a.images.empty())
+        throw UsageError("--board: is looked for in --images; give these instead of --points");
+    if (!a.corners.empty() && !a.board)
+        throw UsageError("--corners: are those of a board; give its --board, such as 9x6x0.03");
     const SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns);
     FitOptions options;
     options.priors = priors_of(a, unknowns);
@@ -184,9 +199,19 @@ void run_fit(const FitArguments& a) {
     options.keeps_outliers = a.keeps_outliers;
     std::unique_ptr<Observations> observations;
     const PictureResiduals* pictures = nullptr;
+    TextFiles files;
     if (!a.points.empty()) {
         observations = std::make_unique<PointResiduals>(
             unknowns, read_seen_points(read_csv_file(a.points, "--points")));
+    } else if (a.board) {
+        std::vector<std::filesystem::path> pictures_of_it;
+        for (const ObservedPicture& picture : pictures_called(a.images))
+            pictures_of_it.push_back(picture.file);
+        PointTable corners = find_board_corners(
+            pictures_of_it, *a.board,
+            [](const std::string& line) { print_message(fmt::format("warning: {}\n", line)); });
+        if (!a.corners.empty()) files.add(a.corners, point_csv(corners));
+        observations = std::make_unique<PointResiduals>(unknowns, std::move(corners));
     } else {
         auto seen =
             std::make_unique<PictureResiduals>(unknowns, pictures_called(a.images), a.cells);
@@ -205,7 +230,6 @@ void run_fit(const FitArguments& a) {
         result = robust_fit(*observations, unknowns, options);
     });
     const FitReport report(*observations, pictures, result);
-    TextFiles files;
     if (!a.csv.empty()) files.add(a.csv, report.csv());
     if (!a.page.empty()) files.add(a.page, report.page(a.scene.filename().string()));
     if (!a.output.empty()) files.add(a.output, fitted_text(a, unknowns, result));

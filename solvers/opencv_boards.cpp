@@ -1,0 +1,24 @@
+#include <opencv2/calib3d.hpp>
+#include <vector>
+
+#include "fit/board_corners.h"
+
+extern "C" __attribute__((visibility("default"))) void uwvdb_find_board(
+    const uw::board_module::GreyPicture& picture, const uw::BoardDesc& board,
+    std::vector<uw::ImagePoint>& corners) {
+    // OpenCV only reads it.
+    const cv::Mat image(picture.height, picture.width, CV_8UC1,
+                        const_cast<unsigned char*>(picture.values.data()));
+    std::vector<cv::Point2f> found;
+    try {
+        if (!cv::findChessboardCornersSB(
+                image, {board.columns, board.rows}, found,
+                cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY))
+            return;
+    } catch (const cv::Exception&) {
+        return;  // pictures too small to hold it
+    }
+    // Its first pixel's centre is (0, 0).
+    for (const cv::Point2f& corner : found)
+        corners.push_back({double{corner.x} + 0.5, double{corner.y} + 0.5});
+}
