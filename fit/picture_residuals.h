@@ -53,7 +53,7 @@ class PictureResiduals final : public Observations {
     const std::vector<std::string>& images() const override { return names_; }
     Place place(std::size_t group) const override;
     const char* noun() const override { return "cell"; }
-    const char* unit() const override { return "of its scatter"; }
+    const char* unit() const override { return "times the scatter"; }
     double of_group(double rms) const override { return rms; }
 
     /// The RMS of prediction less observation over the mean of what was observed, for the cells

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "cli/html_page.h"
 #include "cli/svg_plot.h"
 #include "core/base/csv_table.h"
 #include "core/base/json.h"
@@ -227,9 +228,8 @@ std::string FitReport::csv() const {
 }
 
 /// Residual vectors of points, by their components and where they are in the image.
-std::string FitReport::residual_figure() const {
+PlotFigure FitReport::residual_figure() const {
     PlotFigure figure;
-    figure.title = "Residuals";
     figure.caption = {
         "Left: where a point is predicted less where it was seen. Right: from where it was seen "
         "in the image, 100 times as long. Orange: left out."};
@@ -267,11 +267,12 @@ std::string FitReport::residual_figure() const {
     scatter.curves = {kept, left_out};
     arrows.curves = {lines};
     figure.panels = {scatter, arrows};
-    return svg_document(figure);
+    return figure;
 }
 
-/// Pictures as seen, as predicted, and how they differ, side by side as squares of an SVG.
+/// Pictures as seen, as predicted, and how they differ.
 std::string FitReport::picture_figures() const {
+    const HtmlPictures pictures;
     std::string html;
     for (std::size_t i = 0; i < observations_.images().size(); ++i) {
         const PictureResiduals::Comparison comparison = pictures_->comparison(i);
@@ -285,66 +286,43 @@ std::string FitReport::picture_figures() const {
                 }
         if (!(brightest > 0)) continue;
         mean /= count;
-        html += fmt::format(
-            "<h3>{}</h3>\n<p>Seen, predicted, and predicted less seen: grey "
-            "where they agree, 10 % of the mean at black and white.</p>\n",
-            xml_escaped(observations_.images()[i]));
-        const auto add = [&](const auto& shade) {
-            html += fmt::format("<svg viewBox=\"0 0 {} {}\" width=310 shape-rendering=crispEdges>",
-                                comparison.width, comparison.height);
+        html += fmt::format("<h3>{}</h3>\n", xml_escaped(observations_.images()[i]));
+        const auto add = [&](const std::string& caption, const auto& shade) {
+            Preview picture(comparison.width, comparison.height);
             for (int y = 0; y < comparison.height; ++y)
                 for (int x = 0; x < comparison.width; ++x) {
                     const auto index =
                         static_cast<std::size_t>(y) * static_cast<std::size_t>(comparison.width) +
                         static_cast<std::size_t>(x);
-                    std::string colour = "#";
-                    for (std::size_t k = 0; k < 3; ++k) {
-                        const double value = shade(index, k);
-                        colour +=
-                            std::isfinite(value)
-                                ? fmt::format("{:02x}", std::clamp(static_cast<int>(value), 0, 255))
-                                : std::string(k == 0 ? "60" : "30");
-                    }
-                    html += fmt::format("<rect x={} y={} width=1 height=1 fill={}/>", x, y, colour);
+                    constexpr Srgb8 k_left_out{96, 48, 48};
+                    picture(x, y) = k_left_out;
+                    for (std::size_t k = 0; k < 3; ++k)
+                        if (std::isfinite(comparison.seen[index][k]))
+                            picture(x, y)[k] = static_cast<std::uint8_t>(std::clamp(
+                                shade(comparison.seen[index][k], comparison.predicted[index][k]),
+                                0.0, 255.0));
                 }
-            html += "</svg>\n";
+            html += pictures.figure(picture, caption);
         };
-        const auto encoded = [&](double value) {
-            return std::isfinite(value) ? 255 * srgb_encode(value / brightest) : value;
-        };
-        add([&](std::size_t index, std::size_t k) { return encoded(comparison.seen[index][k]); });
-        add([&](std::size_t index, std::size_t k) {
-            return encoded(comparison.predicted[index][k]);
-        });
-        add([&](std::size_t index, std::size_t k) {
-            constexpr double k_shown = 0.1;
-            return 128 + 127 * (comparison.predicted[index][k] - comparison.seen[index][k]) /
-                             (k_shown * mean);
-        });
+        add("Seen.", [&](double seen, double) { return 255 * srgb_encode(seen / brightest); });
+        add("Predicted.",
+            [&](double, double predicted) { return 255 * srgb_encode(predicted / brightest); });
+        add("Predicted less seen: grey where they agree, 10 % of the mean at black and white.",
+            [&](double seen, double predicted) {
+                constexpr double k_shown = 0.1;
+                return 128 + 127 * (predicted - seen) / (k_shown * mean);
+            });
     }
     return html;
 }
 
 std::string FitReport::page(const std::string& scene) const {
     const auto table = [](const std::vector<std::vector<std::string>>& rows) {
-        std::string html = "<table>";
-        for (std::size_t r = 0; r < rows.size(); ++r) {
-            html += "<tr>";
-            for (std::size_t c = 0; c < rows[r].size(); ++c)
-                html += fmt::format("<{0}{1}>{2}</{0}>", r == 0 ? "th" : "td",
-                                    c > 0 && r > 0 ? " class=n" : "", xml_escaped(rows[r][c]));
-            html += "</tr>\n";
-        }
-        return html + "</table>\n";
+        ReportTable all{rows.front(), 1};
+        for (std::size_t i = 1; i < rows.size(); ++i) all.rows.push_back({rows[i]});
+        return all.html();
     };
-    std::string html = fmt::format(
-        "<!doctype html><html lang=en><meta charset=utf-8><title>{0}</title><style>"
-        "body{{font:15px/1.5 system-ui,sans-serif;max-width:1000px;margin:2em "
-        "auto;padding:0 1em;color:#222}}table{{border-collapse:collapse;margin:1em "
-        "0}}td,th{{padding:.15em .8em;border-bottom:1px solid "
-        "#ddd;text-align:left}}td.n{{text-align:right;white-space:nowrap;"
-        "font-variant-numeric:tabular-nums}}</style>\n<h1>Fit of {0}</h1>\n<p>{1}.</p>\n",
-        xml_escaped(scene), xml_escaped(summary_line()));
+    std::string html = fmt::format("<p>{}.</p>\n", xml_escaped(summary_line()));
     html += "<h2>What was found</h2>\n" + table(value_rows(result_));
     html += fmt::format(
         "<p>Errors are standard errors, from how the residuals spread ({:.3g} {}).</p>\n",
@@ -355,7 +333,7 @@ std::string FitReport::page(const std::string& scene) const {
     for (const std::string& doubt : all_doubts)
         html += fmt::format("<p>{}</p>\n", xml_escaped(doubt));
     html += "<h2>Residuals</h2>\n";
-    html += pictures_ != nullptr ? picture_figures() : residual_figure();
+    html += pictures_ != nullptr ? picture_figures() : plot_html(residual_figure());
     std::vector<std::vector<std::string>> rows{{"image", fmt::format("{}s", observations_.noun()),
                                                 "left out",
                                                 fmt::format("RMS [{}]", observations_.unit())}};
@@ -365,8 +343,8 @@ std::string FitReport::page(const std::string& scene) const {
                         std::to_string(images[i].outliers),
                         fmt::format("{:.3f}", rms_of(images[i], observations_))});
     html += table(rows);
-    html += fmt::format("<p>uwvdb {}</p>\n</html>\n", xml_escaped(program_version()));
-    return html;
+    html += fmt::format("<p>uwvdb {}</p>\n", xml_escaped(program_version()));
+    return html_page("Fit of " + scene, html);
 }
 
 }  // namespace uw

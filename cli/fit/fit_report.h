@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "cli/report.h"
+#include "cli/svg_plot.h"
 #include "fit/picture_residuals.h"
 #include "fit/robust_fit.h"
 
@@ -25,7 +26,7 @@ class FitReport {
 
   private:
     std::string summary_line() const;
-    std::string residual_figure() const;
+    PlotFigure residual_figure() const;
     std::string picture_figures() const;
 
     const Observations& observations_;
