@@ -1,4 +1,4 @@
-// ctest labels: unit analytic
+// ctest labels: unit analytic slow
 // Cameras with ports as formats without them have them: against Snell's law, against lenses that
 // are known, and as COLMAP reads them.
 #include "dataset/pinhole_fit.h"

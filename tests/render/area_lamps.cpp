@@ -1,4 +1,4 @@
-// ctest labels: analytic metamorphic
+// ctest labels: analytic metamorphic slow
 // Lamps with an extent: one lamp in every layer, the light of its points, soft shadows, and what is
 // seen of the lamps themselves.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: metamorphic
+// ctest labels: metamorphic slow
 // Forward scatter: integrators against each other, and equal waters.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// ctest labels: analytic
+// ctest labels: analytic slow
 // Faults of the volume integrator are found, and only where they are.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit slow
 #include <gtest/gtest.h>
 
 #include "tests/support/cli_test.h"

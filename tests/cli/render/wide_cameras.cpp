@@ -1,4 +1,4 @@
-// ctest labels: unit metamorphic
+// ctest labels: unit metamorphic slow
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// ctest labels: analytic statistical
+// ctest labels: analytic statistical slow
 // Light in closed rooms, where its sum is known, and around shining surfaces.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// ctest labels: metamorphic
+// ctest labels: metamorphic slow
 #include <gtest/gtest.h>
 
 #include <cstdint>
