@@ -1,5 +1,5 @@
 // ctest labels: metamorphic slow
-// Lamps from raw pictures of a plane.
+// Water and lamps from raw pictures of a plane.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +11,25 @@
 
 namespace uw::test {
 namespace {
+
+// As cameras store them: a mosaic's raw numbers with shot noise and pixels that differ by 1 %. Four
+// standard errors for six numbers: less than one run in a thousand fails for no reason.
+TEST_F(FitPictures, WaterFromRawNumbers) {
+    take_pictures(k_raw_sensor);
+    const Json found =
+        fit("dive_%02d.sensor.png", "water.absorption,water.scattering.b",
+            {"water.absorption=[0.4, 0.2, 0.1]", "water.scattering.b=[0.15, 0.2, 0.2]"});
+    // What the cells' means may be off by is known from the sensor.
+    EXPECT_NEAR(found.at("rms").get<double>(), 1, 0.1);
+    expect_found(found,
+                 {{"water.absorption[0]", 0.25},
+                  {"water.absorption[1]", 0.09},
+                  {"water.absorption[2]", 0.05},
+                  {"water.scattering.b[0]", 0.30},
+                  {"water.scattering.b[1]", 0.32},
+                  {"water.scattering.b[2]", 0.35}},
+                 4, 0);
+}
 
 // As cameras store them: a mosaic's raw numbers with shot noise and pixels that differ by 1 %. Four
 // standard errors for ten numbers: less than one run in a thousand fails for no reason.
