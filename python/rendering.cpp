@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
@@ -30,6 +31,7 @@
 #include "render/image_derivative.h"
 #include "render/image_header.h"
 #include "render/image_scene.h"
+#include "render/scene_derivatives.h"
 #include "render/scene_loading.h"
 #include "run/job.h"
 #include "run/run_engine.h"
@@ -347,6 +349,58 @@ class RendererObject : public RunClient {
         return std::move(image_);
     }
 
+    /// A change of a scene: the number's key, the scene with less and with more of it, and by how
+    /// much the number differs between them.
+    using Change = std::tuple<std::string, const SceneObject*, const SceneObject*, double>;
+
+    /// The derivatives (changes, rows, columns, bands) of the image that `render` would give.
+    py::array_t<float> derivatives(const SceneObject& scene, const std::vector<Change>& changes,
+                                   const py::dict& settings, const py::object& progress) {
+        const std::unique_lock alone(busy_, std::try_to_lock);
+        if (!alone)
+            throw UsageError(
+                "derivatives: this Renderer is at work, in another thread or further up; make one "
+                "for each thread");
+        const Wanted wanted = wanted_of(settings);
+        const auto image_of = [&](const SceneObject& object) {
+            SceneDesc desc = *object.desc();
+            apply_request(wanted.image, desc);
+            return scene_of_image(desc, wanted.choice);
+        };
+        const ImageScene itself = image_of(scene);
+        std::vector<ChangedScene> changed;
+        for (const auto& [name, less, more, step] : changes)
+            changed.push_back({name, image_of(*less), image_of(*more), step});
+        const CameraDesc& camera = itself.desc().camera;
+        const PixelWindow window = wanted.options.window.value_or(
+            PixelWindow{0, 0, camera.width, camera.height});
+        const std::size_t bands = itself.desc().water.bands_nm.size();
+        auto values = std::make_unique<std::vector<float>>();
+        {
+            const py::gil_scoped_release release;
+            task_.run(
+                [&] {
+                    with_threads(threads_, [&] {
+                        engine_->lend(*this, [&](Renderer& renderer) {
+                            renderer.set_scene(itself);
+                            *values = scene_derivatives(
+                                renderer, changed, wanted.options,
+                                [&](double share) { tell("derivatives", share); });
+                        });
+                    });
+                },
+                [&](const std::vector<WatchedTask::News>& news) { watch(news, progress); });
+        }
+        const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(changes.size()),
+                                             window.height(), window.width(),
+                                             static_cast<py::ssize_t>(bands)};
+        const float* const data = values->data();
+        const py::capsule owner(values.release(), [](void* pointer) {
+            delete static_cast<std::vector<float>*>(pointer);
+        });
+        return py::array_t<float>(shape, data, owner);
+    }
+
     void clear() {
         const std::unique_lock alone(busy_, std::try_to_lock);
         if (!alone) throw UsageError("clear: this Renderer is at work in another thread");
@@ -423,6 +477,8 @@ void bind_renderer(py::module_& module) {
         .def(py::init<int>(), py::arg("threads"))
         .def("render", &RendererObject::render, py::arg("scene"), py::arg("settings"),
              py::arg("progress"))
+        .def("derivatives", &RendererObject::derivatives, py::arg("scene"), py::arg("changes"),
+             py::arg("settings"), py::arg("progress"))
         .def("clear", &RendererObject::clear);
 }
 

@@ -1,0 +1,107 @@
+#include "core/passes/derivative_images.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "core/base/available_memory.h"
+#include "core/base/parallel.h"
+#include "core/passes/path_pass.h"
+#include "core/passes/pixel_terms.h"
+
+namespace uw {
+
+namespace {
+
+/// Sums the terms of a pixel, each times its scores.
+class ScoreSum final : public PathTerms {
+  public:
+    explicit ScoreSum(const ChangedScenes& scenes)
+        : bands_(scenes.bands()),
+          scores_(scenes),
+          score_(scenes.changes() * scenes.bands()),
+          sums_(score_.size()) {}
+
+    void begin() {
+        scores_.begin();
+        sums_.assign(sums_.size(), 0.0);
+    }
+    int turn(int before, const PathTurn& turn) override {
+        // A pixel's many paths need not be kept.
+        if (before == k_no_turn) scores_.begin();
+        return scores_.turn(before, turn);
+    }
+    void add(const PathTerm& term) override {
+        scores_.find(term, score_);
+        for (std::size_t i = 0; i < sums_.size(); ++i)
+            sums_[i] += term.radiance[i % bands_] * score_[i];
+    }
+    const std::vector<double>& sums() const { return sums_; }
+
+  private:
+    std::size_t bands_;
+    PathScores scores_;
+    std::vector<double> score_, sums_;
+};
+
+/// Calls `render(x, y, sum)` for each pixel, which returns its light's factor, and stores the sums.
+template <class Render>
+std::vector<float> images_of(const ChangedScenes& scenes, const PixelWindow& window,
+                             const ShareCallback& progress, const Render& render) {
+    const auto width = static_cast<std::size_t>(window.width());
+    const auto height = static_cast<std::size_t>(window.height());
+    const std::size_t bands = scenes.bands(), pixels = width * height;
+    require_memory(4.0 * static_cast<double>(scenes.changes() * pixels * bands),
+                   fmt::format("the derivatives of {} x {} pixels by {} numbers need", width,
+                               height, scenes.changes()),
+                   "take fewer numbers at once, or a part of the image");
+    std::vector<float> images(scenes.changes() * pixels * bands);
+    constexpr std::size_t k_run = 8;  // pixels that one task renders, in a row
+    const std::size_t runs = (width + k_run - 1) / k_run;
+    std::atomic<std::size_t> done = 0;
+    parallel_for(runs * height, [&](std::size_t task) {
+        ScoreSum sum(scenes);
+        const std::size_t row = task / runs, first = task % runs * k_run;
+        for (std::size_t column = first; column < std::min(first + k_run, width); ++column) {
+            sum.begin();
+            const double factor = render(window.x0 + static_cast<int>(column),
+                                         window.y0 + static_cast<int>(row), sum);
+            for (std::size_t i = 0; i < scenes.changes(); ++i)
+                for (std::size_t b = 0; b < bands; ++b)
+                    images[((i * height + row) * width + column) * bands + b] =
+                        static_cast<float>(factor * sum.sums()[i * bands + b]);
+        }
+        progress(static_cast<double>(++done) / static_cast<double>(runs * height));
+    });
+    return images;
+}
+
+}  // namespace
+
+std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
+                                          const VolumeIntegrator& water,
+                                          const ChangedScenes& scenes, const PixelWindow& window,
+                                          const ShareCallback& progress) {
+    return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
+        thread_local PixelView view;
+        thread_local SurfaceLight light;
+        pixels.trace(x, y, view);
+        pixels.light_surfaces(std::span(&view, 1), light);
+        add_quadrature_terms(pixels, water, view, light, sum);
+        return pixels.pixel_factor(view);
+    });
+}
+
+std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedScenes& scenes,
+                                    const PixelWindow& window, int samples,
+                                    const ShareCallback& progress) {
+    PathPixels paths(pixels, 0);
+    paths.share_out(samples);
+    return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
+        thread_local PixelResult result;
+        paths.render(x, y, {.number = 0, .samples = samples}, [](int) {}, result, &sum);
+        return result.pixel_factor / samples;
+    });
+}
+
+}  // namespace uw

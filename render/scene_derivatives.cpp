@@ -1,0 +1,127 @@
+#include "render/scene_derivatives.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/light/integrator_table.h"
+#include "core/passes/derivative_images.h"
+#include "render/exposure.h"
+
+namespace uw {
+
+namespace {
+
+void refuse_other_images(const AssembledScene& scene) {
+    const auto refuse = [](const std::string& what) {
+        throw UsageError("derivatives: " + what);
+    };
+    const LayerPlan plan = layer_plan(scene.image, {});
+    if (plan.is_provided(Layer::forward))
+        refuse(
+            "forward scatter blurs the finished image, and how is not differentiated; remove "
+            "water.forward_scatter, or set its K to 0");
+    if (plan.is_provided(Layer::snow))
+        refuse("marine snow is drawn particle by particle and has none; remove water.snow");
+    if (Exposure(scene).part_count() > 0)
+        refuse(
+            "they are those of a single moment, not of the mean over an exposure; set "
+            "render.shutter and camera.line_time to 0");
+    if (scene.desc().render.output == RenderDesc::Output::paper)
+        refuse("they are those of radiance; remove render.output");
+    if (colour_groups_of(scene.desc()).size() > 1)
+        refuse(
+            "the port refracts each band by itself, and they are those of one ray for all; give "
+            "its indices as numbers");
+    using enum RenderDesc::Integrator;
+    const RenderDesc::Integrator integrator = scene.desc().render.integrator;
+    if (integrator != volume && integrator != path)
+        refuse("they are computed by the integrators volume and path; choose one of them");
+}
+
+void refuse_other_changes(const std::string& name, const SceneDesc& desc,
+                          const SceneDesc& changed) {
+    const auto refuse = [&](const char* what) {
+        throw UsageError(fmt::format("derivatives: {}: {}", printable(name), what));
+    };
+    for (const char* const key : {"camera", "cameras", "rig", "render", "frames", "sensors"})
+        if (name.starts_with(key))
+            refuse(
+                "only of the water, volumes, lamps and surfaces; where the camera sees a point has "
+                "derivatives by differences of Camera.project");
+    if (changed.water.surface != desc.water.surface)
+        refuse("the water's surface moves all light; take differences of images");
+    if (changed.geometry.size() != desc.geometry.size()) refuse("it changes what surfaces there are");
+    for (std::size_t i = 0; i < desc.geometry.size(); ++i) {
+        GeometryDesc other = changed.geometry[i];
+        other.reflectance = desc.geometry[i].reflectance;
+        if (other != desc.geometry[i])
+            refuse("it moves surfaces, and what they hide with them; take differences of images");
+    }
+}
+
+/// What scores need of an assembled scene, kept while the renderer goes on to others.
+struct KeptScene {
+    explicit KeptScene(const AssembledScene& scene)
+        : medium(scene.water.medium),
+          emitters(scene.emitters),
+          field(scene.field),
+          surfaces(scene.surfaces),
+          water_surface(scene.water_surface) {}
+
+    LitScene lit() const {
+        LitScene lit{&medium, field.get(), surfaces.get(), &emitters};
+        lit.water_surface = water_surface ? &*water_surface : nullptr;
+        return lit;
+    }
+
+    Medium medium;
+    std::vector<Lamp> emitters;
+    std::shared_ptr<const ConcentrationField> field;
+    std::shared_ptr<const Surfaces> surfaces;
+    std::optional<WaterSurface> water_surface;
+};
+
+}  // namespace
+
+std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
+                                     const RenderOptions& options, const ShareCallback& progress) {
+    refuse_other_images(renderer.assemble());
+    const ImageScene itself = renderer.scene();
+    std::vector<std::unique_ptr<const KeptScene>> kept;
+    std::vector<SceneChange> lit;
+    const auto assembled = [&](const std::string& name, const ImageScene& image) {
+        refuse_other_changes(name, itself.desc(), image.desc());
+        renderer.set_scene(image);
+        kept.push_back(std::make_unique<const KeptScene>(renderer.assemble()));
+        return kept.back()->lit();
+    };
+    for (const ChangedScene& change : changes) {
+        const LitScene less = assembled(change.name, change.less);
+        lit.push_back({less, assembled(change.name, change.more), change.step});
+    }
+    renderer.set_scene(itself);
+    const AssembledScene& scene = renderer.assemble();
+    const ChangedScenes changed(scene.lit(), lit);
+    const CameraDesc& camera = scene.desc().camera;
+    const PixelWindow window =
+        options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
+    const bool by_paths = scene.desc().render.integrator == RenderDesc::Integrator::path ||
+                          layer_plan(scene.image, {}).is_provided(Layer::multiple);
+    if (by_paths) {
+        const LightTransport transport = make_path_transport(scene, scene.scattering);
+        return path_derivatives(pixel_renderer(scene, transport), changed, window,
+                                samples_of(scene.desc().render), progress);
+    }
+    renderer.splat();
+    const LightTransport transport = renderer.make_transport();
+    const auto* const water = dynamic_cast<const VolumeIntegrator*>(transport.integrator.get());
+    return quadrature_derivatives(pixel_renderer(scene, transport), *water, changed, window,
+                                  progress);
+}
+
+}  // namespace uw

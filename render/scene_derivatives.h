@@ -1,0 +1,34 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/renderer.h"
+
+namespace uw {
+
+/// The scene of an image with one of its numbers, or several together, a little less and a little
+/// more than it has them.
+struct ChangedScene {
+    std::string name;  // the number's key, "lamps[0].position"; begins messages
+    ImageScene less, more;
+    double step = 0;  // by how much the number differs between the two
+};
+
+/// The derivatives of the image of the scene that `renderer` has by these numbers, band by band:
+/// [change][pixel of options.window, row by row][band], as `total` has light, per unit of the
+/// number. Of numbers of the water, its particles and volumes, of the lamps, and of what surfaces
+/// reflect and emit.
+///
+/// Light scattered once is differentiated term by term at the nodes of the integrator volume; all
+/// light, and scenes of the integrator path, by random paths, as many per pixel as the image's
+/// samples or options say (core/passes/derivative_images.h): without bias, and with noise. What a
+/// number moves in the image (the edge of a shadow, or of a beam that ends at once) is not in it.
+/// The renderer has the same scene afterwards. Throws UsageError for images whose light is not a
+/// sum over paths (forward scatter, snow, exposures with motion, bands with rays of their own, the
+/// paper's output) and for changes of anything else, saying why; and as Renderer.
+std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
+                                     const RenderOptions& options, const ShareCallback& progress);
+
+}  // namespace uw
