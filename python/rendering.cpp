@@ -356,49 +356,40 @@ class RendererObject : public RunClient {
     /// The derivatives (changes, rows, columns, bands) of the image that `render` would give.
     py::array_t<float> derivatives(const SceneObject& scene, const std::vector<Change>& changes,
                                    const py::dict& settings, const py::object& progress) {
-        const std::unique_lock alone(busy_, std::try_to_lock);
-        if (!alone)
-            throw UsageError(
-                "derivatives: this Renderer is at work, in another thread or further up; make one "
-                "for each thread");
         const Wanted wanted = wanted_of(settings);
-        const auto image_of = [&](const SceneObject& object) {
-            SceneDesc desc = *object.desc();
-            apply_request(wanted.image, desc);
-            return scene_of_image(desc, wanted.choice);
-        };
-        const ImageScene itself = image_of(scene);
         std::vector<ChangedScene> changed;
         for (const auto& [name, less, more, step] : changes)
-            changed.push_back({name, image_of(*less), image_of(*more), step});
+            changed.push_back({name, image_of(*less, wanted), image_of(*more, wanted), step});
+        const ImageScene itself = image_of(scene, wanted);
         const CameraDesc& camera = itself.desc().camera;
         const PixelWindow window = wanted.options.window.value_or(
             PixelWindow{0, 0, camera.width, camera.height});
-        const std::size_t bands = itself.desc().water.bands_nm.size();
-        auto values = std::make_unique<std::vector<float>>();
-        {
-            const py::gil_scoped_release release;
-            task_.run(
-                [&] {
-                    with_threads(threads_, [&] {
-                        engine_->lend(*this, [&](Renderer& renderer) {
-                            renderer.set_scene(itself);
-                            *values = scene_derivatives(
-                                renderer, changed, wanted.options,
-                                [&](double share) { tell("derivatives", share); });
-                        });
-                    });
-                },
-                [&](const std::vector<WatchedTask::News>& news) { watch(news, progress); });
-        }
-        const std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(changes.size()),
-                                             window.height(), window.width(),
-                                             static_cast<py::ssize_t>(bands)};
-        const float* const data = values->data();
-        const py::capsule owner(values.release(), [](void* pointer) {
-            delete static_cast<std::vector<float>*>(pointer);
+        std::vector<float> values = differentiate(itself, progress, [&](Renderer& renderer) {
+            return scene_derivatives(renderer, changed, wanted.options, told("derivatives"));
         });
-        return py::array_t<float>(shape, data, owner);
+        return owned(std::move(values),
+                     {static_cast<py::ssize_t>(changes.size()), window.height(), window.width(),
+                      static_cast<py::ssize_t>(itself.desc().water.bands_nm.size())});
+    }
+
+    /// The derivatives of a number by the values of the array of a volume, from those by the light
+    /// of the image's pixels (rows, columns, bands).
+    py::array_t<float> voxel_derivatives(
+        const SceneObject& scene, std::size_t volume,
+        const py::array_t<double, py::array::c_style | py::array::forcecast>& weights,
+        const py::dict& settings, const py::object& progress) {
+        const Wanted wanted = wanted_of(settings);
+        const ImageScene itself = image_of(scene, wanted);
+        const std::span<const double> values(weights.data(),
+                                             static_cast<std::size_t>(weights.size()));
+        std::vector<float> found = differentiate(itself, progress, [&](Renderer& renderer) {
+            return uw::voxel_derivatives(renderer, volume, values, wanted.options,
+                                         told("derivatives"));
+        });
+        std::vector<py::ssize_t> shape;
+        for (const std::size_t side : itself.desc().volumes[volume].array->size)
+            shape.push_back(static_cast<py::ssize_t>(side));
+        return owned(std::move(found), shape);
     }
 
     void clear() {
@@ -444,6 +435,47 @@ class RendererObject : public RunClient {
     void tell(const std::string& stage, double fraction) override { task_.tell(stage, fraction); }
 
   private:
+    static ImageScene image_of(const SceneObject& scene, const Wanted& wanted) {
+        SceneDesc desc = *scene.desc();
+        apply_request(wanted.image, desc);
+        return scene_of_image(desc, wanted.choice);
+    }
+
+    ShareCallback told(const char* stage) {
+        return [this, stage](double share) { tell(stage, share); };
+    }
+
+    /// What `work` makes with the renderer, which has the scene.
+    template <class Work>
+    std::vector<float> differentiate(const ImageScene& scene, const py::object& progress,
+                                     const Work& work) {
+        const std::unique_lock alone(busy_, std::try_to_lock);
+        if (!alone)
+            throw UsageError(
+                "derivatives: this Renderer is at work, in another thread or further up; make one "
+                "for each thread");
+        std::vector<float> values;
+        const auto differentiated = [&](Renderer& renderer) {
+            renderer.set_scene(scene);
+            values = work(renderer);
+        };
+        const py::gil_scoped_release release;
+        task_.run([&] { with_threads(threads_, [&] { engine_->lend(*this, differentiated); }); },
+                  [&](const std::vector<WatchedTask::News>& news) { watch(news, progress); });
+        return values;
+    }
+
+    /// An array that owns the values.
+    static py::array_t<float> owned(std::vector<float> values,
+                                    const std::vector<py::ssize_t>& shape) {
+        auto kept = std::make_unique<std::vector<float>>(std::move(values));
+        const float* const data = kept->data();
+        const py::capsule owner(kept.release(), [](void* pointer) {
+            delete static_cast<std::vector<float>*>(pointer);
+        });
+        return py::array_t<float>(shape, data, owner);
+    }
+
     void work(const SceneDesc& desc) {
         JobScenes scenes([&](int /*number*/) {
             SceneDesc requested = desc;
@@ -479,6 +511,8 @@ void bind_renderer(py::module_& module) {
              py::arg("progress"))
         .def("derivatives", &RendererObject::derivatives, py::arg("scene"), py::arg("changes"),
              py::arg("settings"), py::arg("progress"))
+        .def("voxel_derivatives", &RendererObject::voxel_derivatives, py::arg("scene"),
+             py::arg("volume"), py::arg("weights"), py::arg("settings"), py::arg("progress"))
         .def("clear", &RendererObject::clear);
 }
 

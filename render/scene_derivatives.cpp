@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/light/integrator_table.h"
 #include "core/passes/derivative_images.h"
+#include "media/volumes/voxel_gradient.h"
 #include "render/exposure.h"
 
 namespace uw {
@@ -86,6 +89,26 @@ struct KeptScene {
     std::optional<WaterSurface> water_surface;
 };
 
+/// What `by_paths(pixels, window, samples)` or `by_quadrature(pixels, water, window)` makes of the
+/// renderer's scene, as its light requires.
+template <class ByPaths, class ByQuadrature>
+auto by_light(Renderer& renderer, const RenderOptions& options, const ByPaths& by_paths,
+              const ByQuadrature& by_quadrature) {
+    const AssembledScene& scene = renderer.assemble();
+    const CameraDesc& camera = scene.desc().camera;
+    const PixelWindow window =
+        options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
+    if (scene.desc().render.integrator == RenderDesc::Integrator::path ||
+        layer_plan(scene.image, {}).is_provided(Layer::multiple)) {
+        const LightTransport transport = make_path_transport(scene, scene.scattering);
+        return by_paths(pixel_renderer(scene, transport), window, samples_of(scene.desc().render));
+    }
+    renderer.splat();
+    const LightTransport transport = renderer.make_transport();
+    const auto& water = dynamic_cast<const VolumeIntegrator&>(*transport.integrator);
+    return by_quadrature(pixel_renderer(scene, transport), water, window);
+}
+
 }  // namespace
 
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
@@ -107,21 +130,65 @@ std::vector<float> scene_derivatives(Renderer& renderer, std::span<const Changed
     renderer.set_scene(itself);
     const AssembledScene& scene = renderer.assemble();
     const ChangedScenes changed(scene.lit(), lit);
-    const CameraDesc& camera = scene.desc().camera;
-    const PixelWindow window =
-        options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
-    const bool by_paths = scene.desc().render.integrator == RenderDesc::Integrator::path ||
-                          layer_plan(scene.image, {}).is_provided(Layer::multiple);
-    if (by_paths) {
-        const LightTransport transport = make_path_transport(scene, scene.scattering);
-        return path_derivatives(pixel_renderer(scene, transport), changed, window,
-                                samples_of(scene.desc().render), progress);
+    return by_light(
+        renderer, options,
+        [&](const PixelRenderer& pixels, const PixelWindow& window, int samples) {
+            return path_derivatives(pixels, changed, window, samples, progress);
+        },
+        [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
+            return quadrature_derivatives(pixels, water, changed, window, progress);
+        });
+}
+
+namespace {
+
+// Copies of the gradient for the parts of an image may take this much memory, or two.
+constexpr double k_gradient_bytes = 256e6;
+constexpr std::size_t k_most_parts = 16;
+
+}  // namespace
+
+std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
+                                     std::span<const double> weights, const RenderOptions& options,
+                                     const ShareCallback& progress) {
+    const AssembledScene& scene = renderer.assemble();
+    refuse_other_images(scene);
+    const std::vector<VolumeDesc>& volumes = scene.desc().volumes;
+    if (volume >= volumes.size() || volumes[volume].array == nullptr)
+        throw UsageError(
+            "derivatives: only of the voxels of volumes in memory; read the file's grid as an "
+            "array and add that to the scene");
+    const std::array<std::size_t, 3> size = volumes[volume].array->size;
+    const double bytes = 8.0 * static_cast<double>(size[0] * size[1] * size[2]);
+    const auto parts = static_cast<std::size_t>(
+        std::clamp(k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_most_parts}));
+    require_memory(bytes * static_cast<double>(parts), "the derivatives by voxel need",
+                   "use fewer voxels");
+    std::vector<std::unique_ptr<FieldGradient>> gradients;
+    std::vector<const VoxelGradient*> by_part;
+    for (std::size_t i = 0; i < parts; ++i) {
+        auto part = std::make_unique<VoxelGradient>(scene.volumes[volume].grids.front(), size);
+        by_part.push_back(part.get());
+        gradients.push_back(std::move(part));
     }
-    renderer.splat();
-    const LightTransport transport = renderer.make_transport();
-    const auto* const water = dynamic_cast<const VolumeIntegrator*>(transport.integrator.get());
-    return quadrature_derivatives(pixel_renderer(scene, transport), *water, changed, window,
-                                  progress);
+    const auto weights_of = [&](const PixelWindow& window) {
+        return PixelWeights{window, scene.desc().water.bands_nm.size(), weights};
+    };
+    by_light(
+        renderer, options,
+        [&](const PixelRenderer& pixels, const PixelWindow& window, int samples) {
+            path_gradient(pixels, weights_of(window), samples, gradients, progress);
+        },
+        [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
+            quadrature_gradient(pixels, water, weights_of(window), gradients, progress);
+        });
+    std::vector<float> sums(by_part.front()->values().size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        double sum = 0;
+        for (const VoxelGradient* part : by_part) sum += part->values()[i];
+        sums[i] = static_cast<float>(sum);
+    }
+    return sums;
 }
 
 }  // namespace uw

@@ -31,4 +31,13 @@ struct ChangedScene {
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
                                      const RenderOptions& options, const ShareCallback& progress);
 
+/// The derivatives of a number by the values of a grid that is in memory (VolumeDesc::array), from
+/// its derivatives by the light of the pixels of options.window, row by row, `weights` [pixel][band]:
+/// by value (i, j, k), [(i * size[1] + j) * size[2] + k] of LoadedGrid::size. As scene_derivatives;
+/// where nothing scatters, it is as if nothing were added that does. Throws UsageError if volume
+/// `volume` is none in memory.
+std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
+                                     std::span<const double> weights, const RenderOptions& options,
+                                     const ShareCallback& progress);
+
 }  // namespace uw

@@ -104,4 +104,76 @@ std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedSc
     });
 }
 
+namespace {
+
+/// Hands the worth of each term of a pixel back to the field.
+class WorthOfTerms final : public PathTerms {
+  public:
+    WorthOfTerms(const GradientTables& tables, FieldGradient& gradient, std::size_t bands)
+        : gradient_(tables, gradient), factors_(bands), worth_(bands) {}
+
+    /// The number's derivative by the light of the terms that follow.
+    void begin(std::span<const double> weights, double factor) {
+        for (std::size_t b = 0; b < factors_.size(); ++b) factors_[b] = factor * weights[b];
+    }
+    void finish() { gradient_.finish(); }
+    int turn(int before, const PathTurn& turn) override { return gradient_.turn(before, turn); }
+    void add(const PathTerm& term) override {
+        for (std::size_t b = 0; b < factors_.size(); ++b)
+            worth_[b] = factors_[b] * term.radiance[b];
+        gradient_.add(term, worth_);
+    }
+
+  private:
+    PathGradient gradient_;
+    std::vector<double> factors_, worth_;
+};
+
+/// Calls `render(x, y, terms)` for each pixel, row by row, in as many parts as there are gradients.
+template <class Render>
+void gather(const LitScene& scene, const PixelWeights& weights, FieldGradients gradients,
+            const ShareCallback& progress, const Render& render) {
+    const GradientTables tables(scene);
+    const PixelWindow& window = weights.window;
+    std::atomic<int> done = 0;
+    parallel_for(gradients.size(), [&](std::size_t part) {
+        WorthOfTerms terms(tables, *gradients[part], weights.bands);
+        for (int y = window.y0 + static_cast<int>(part); y < window.y1;
+             y += static_cast<int>(gradients.size())) {
+            for (int x = window.x0; x < window.x1; ++x) render(x, y, terms);
+            progress(static_cast<double>(++done) / window.height());
+        }
+    });
+}
+
+}  // namespace
+
+void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
+                         const PixelWeights& weights, FieldGradients gradients,
+                         const ShareCallback& progress) {
+    gather(pixels.scene(), weights, gradients, progress, [&](int x, int y, WorthOfTerms& terms) {
+        thread_local PixelView view;
+        thread_local SurfaceLight light;
+        pixels.trace(x, y, view);
+        pixels.light_surfaces(std::span(&view, 1), light);
+        terms.begin(weights.at(x, y), pixels.pixel_factor(view));
+        add_quadrature_terms(pixels, water, view, light, terms);
+        terms.finish();
+    });
+}
+
+void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, int samples,
+                   FieldGradients gradients, const ShareCallback& progress) {
+    PathPixels paths(pixels, 0);
+    paths.share_out(samples);
+    gather(pixels.scene(), weights, gradients, progress, [&](int x, int y, WorthOfTerms& terms) {
+        thread_local PixelResult result;
+        thread_local PixelView view;
+        pixels.trace(x, y, view);
+        terms.begin(weights.at(x, y), pixels.pixel_factor(view) / samples);
+        paths.render(x, y, {.number = 0, .samples = samples}, [](int) {}, result, &terms);
+        terms.finish();
+    });
+}
+
 }  // namespace uw

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "core/base/progress.h"
 #include "core/image/film.h"
 #include "core/light/volume_integrator.h"
 #include "core/passes/pixel_renderer.h"
+#include "core/paths/path_gradient.h"
 #include "core/paths/path_scores.h"
 
 namespace uw {
@@ -28,5 +31,32 @@ std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
 std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedScenes& scenes,
                                     const PixelWindow& window, int samples,
                                     const ShareCallback& progress);
+
+/// An image of weights, [pixel of the window][band]: the derivative of some number by the light of
+/// an image's pixels.
+struct PixelWeights {
+    PixelWindow window;
+    std::size_t bands = 0;
+    std::span<const double> values;
+
+    std::span<const double> at(int x, int y) const {
+        const auto row = static_cast<std::size_t>(y - window.y0);
+        const auto column = static_cast<std::size_t>(x - window.x0);
+        return values.subspan((row * static_cast<std::size_t>(window.width()) + column) * bands,
+                              bands);
+    }
+};
+
+/// Where the derivatives of that number by the values of the scene's field are gathered: one for
+/// each part of the image, that is rendered in one thread.
+using FieldGradients = std::span<const std::unique_ptr<FieldGradient>>;
+
+/// Gathers them. Otherwise as quadrature_derivatives.
+void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
+                         const PixelWeights& weights, FieldGradients gradients,
+                         const ShareCallback& progress);
+/// As path_derivatives.
+void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, int samples,
+                   FieldGradients gradients, const ShareCallback& progress);
 
 }  // namespace uw

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -85,10 +86,24 @@ def changes_of(scene: Scene, path: str) -> tuple[tuple[int, ...], list[Change]]:
     return shape, result
 
 
-def checked_gradient(gradient: Any, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    """The derivative of some number by an image's light, of the image's shape."""
+def volume_of_array(path: str) -> int | None:
+    """Which volume `path` names the array of; None: it is another path."""
+    found = re.fullmatch(r"volumes\[(\d+)\]\.array", path)
+    return int(found[1]) if found else None
+
+
+def checked_gradient(gradient: Any, scene: Scene,
+                     settings: Mapping[str, Any]) -> NDArray[np.float64]:
+    """The derivative of some number by an image's light, of the image's shape. Raises
+    UsageError."""
+    camera = scene.camera_at(settings.get("camera"))
+    width, height = settings.get("size") or (camera.width, camera.height)
+    if settings.get("crop"):
+        x0, y0, x1, y1 = settings["crop"]
+        width, height = x1 - x0, y1 - y0
+    shape = (height, width, len(scene.bands))
     found = np.asarray(_arrays.numbers("backward: gradient", gradient, np.float64))
     if found.shape != shape:
         raise UsageError(f"backward: gradient: expected the shape of the image's total, "
                          f"{_arrays.shape_text(shape)}, found {_arrays.shape_text(found.shape)}")
-    return found
+    return np.ascontiguousarray(found)

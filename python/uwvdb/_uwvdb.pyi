@@ -72,6 +72,9 @@ class Renderer:
     def derivatives(self, scene: Scene, changes: list[tuple[str, Scene, Scene, float]],
                     settings: dict[str, Any],
                     progress: Callable[[str, float], Any] | None) -> NDArray[np.float32]: ...
+    def voxel_derivatives(self, scene: Scene, volume: int, weights: NDArray[np.float64],
+                          settings: dict[str, Any],
+                          progress: Callable[[str, float], Any] | None) -> NDArray[np.float32]: ...
     def clear(self) -> None: ...
 
 class Camera:

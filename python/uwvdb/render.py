@@ -169,25 +169,31 @@ class Renderer:
                  **settings: Any) -> dict[str, NDArray[np.float64]]:
         """The derivatives of a number by those at the paths `of` (a vector times a Jacobian), each
         of the shape that the scene has there; `gradient` (height, width, bands) is the number's
-        derivative by "total". For a loss of two images, 2 (total - seen) of the sum of squares.
-        Like jvp() otherwise; one pass over the image whatever there is in `of`."""
+        derivative by "total": 2 (total - seen) where it is the sum of squares of what an image is
+        off. "volumes[0].array" stands for all values of an array that was added to the volumes.
+
+        Like jvp() otherwise. Numbers take a pass over the image together, and each array one."""
         options = _settings("backward", scene, settings)
         paths = [of] if isinstance(of, str) else list(of)
+        weights = _changes.checked_gradient(gradient, scene, settings)
+        result: dict[str, NDArray[np.float64]] = {}
         changes: list[_changes.Change] = []
         shapes: dict[str, tuple[int, ...]] = {}
         for path in paths:
+            volume = _changes.volume_of_array(path)
+            if volume is not None:
+                result[path] = self._renderer.voxel_derivatives(
+                    scene._native, volume, weights, options, progress).astype(np.float64)
+                continue
             shapes[path], more = _changes.changes_of(scene, path)
             changes += more
-        images = self._renderer.derivatives(scene._native, changes, options, progress)
-        weights = _changes.checked_gradient(gradient, images.shape[1:])
-        all_of = np.einsum("kyxb,yxb->k", images, weights)
-        result: dict[str, NDArray[np.float64]] = {}
-        first = 0
-        for path, shape in shapes.items():
-            count = int(np.prod(shape, dtype=int))
-            result[path] = all_of[first:first + count].reshape(shape)
-            first += count
-        return result
+        if changes:
+            images = self._renderer.derivatives(scene._native, changes, options, progress)
+            numbers = np.einsum("kyxb,yxb->k", images, weights)
+            ends = np.cumsum([np.prod(shape, dtype=int) for shape in shapes.values()])
+            for (path, shape), of_path in zip(shapes.items(), np.split(numbers, ends[:-1])):
+                result[path] = of_path.reshape(shape)
+        return {path: result[path] for path in paths}
 
     def clear(self) -> None:
         """Frees what is kept for the next image, and reads files anew."""
