@@ -28,10 +28,9 @@
 #include "python/bindings.h"
 #include "python/scene.h"
 #include "python/watched_task.h"
-#include "render/image_derivative.h"
+#include "render/derivatives.h"
 #include "render/image_header.h"
 #include "render/image_scene.h"
-#include "render/scene_derivatives.h"
 #include "render/scene_loading.h"
 #include "run/job.h"
 #include "run/run_engine.h"
@@ -362,8 +361,8 @@ class RendererObject : public RunClient {
             changed.push_back({name, image_of(*less, wanted), image_of(*more, wanted), step});
         const ImageScene itself = image_of(scene, wanted);
         const CameraDesc& camera = itself.desc().camera;
-        const PixelWindow window = wanted.options.window.value_or(
-            PixelWindow{0, 0, camera.width, camera.height});
+        const PixelWindow window =
+            wanted.options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
         std::vector<float> values = differentiate(itself, progress, [&](Renderer& renderer) {
             return scene_derivatives(renderer, changed, wanted.options, told("derivatives"));
         });
@@ -422,9 +421,13 @@ class RendererObject : public RunClient {
             image_->objects = numbered(names.objects);
             image_->materials = numbered(names.materials);
         }
-        for (const std::string& name : wanted_->derivatives)
-            image_->derivatives[name] =
-                image_derivative(engine_->renderer(), name, wanted_->options);
+        const std::vector<std::string>& names = wanted_->derivatives;
+        if (names.empty()) return {};
+        const std::vector<float> all =
+            named_derivatives(engine_->renderer(), names, wanted_->options, told("derivatives"));
+        const std::size_t each = all.size() / names.size();
+        for (std::size_t i = 0; i < names.size(); ++i)
+            image_->derivatives[names[i]].assign(&all[i * each], &all[i * each] + each);
         return {};
     }
 

@@ -40,13 +40,6 @@ void ScatterNodes::look_up(const ConcentrationProfile& profile) {
     }
 }
 
-void ScatterNodes::weigh(const PathWeight& path_weight) {
-    const double* const columns = path_weight.kind == PathWeight::Kind::column
-                                      ? column.data() + path_weight.constituent * size()
-                                      : nullptr;
-    for (std::size_t i = 0; i < size(); ++i) weight[i] *= columns ? columns[i] : s[i] + radius[i];
-}
-
 void ScatterNodes::evaluate_phases(const PhaseTable& table, std::size_t phases) {
     phase.resize(size() * phases);
     table.evaluate(half_tangent, phase);
@@ -334,8 +327,7 @@ void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double be
     const LampPassage passage(ray, lamp);
     double reach = distances.back();
     if (smallest_attenuation_ > 0)
-        reach =
-            std::min(reach, passage.reach(k_negligible_optical_depth / smallest_attenuation_));
+        reach = std::min(reach, passage.reach(k_negligible_optical_depth / smallest_attenuation_));
     deep_shadows_[emitter]->lit_intervals(ray, lamp.beam(ray, {begin, reach}), w.lit);
     w.nodes.clear();
     for (const Interval& interval : w.lit) {
@@ -348,7 +340,6 @@ void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double be
     deep_shadows_[emitter]->columns(w.nodes.position, w.nodes.lamp_column);
     refine_columns(emitter, w.nodes, w.profile.constituent_count);
     w.nodes.look_up(w.profile);
-    if (scene_.path_weight) w.nodes.weigh(scene_.path_weight);
     w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
 }
 

@@ -31,9 +31,6 @@ struct ScatterNodes {
     void clear();
     /// Fills column and concentration from the ray's profile and lamp_column.
     void look_up(const ConcentrationProfile& profile);
-    /// Multiplies every node's weight by that of its path, from lamp to node to the ray's origin.
-    /// After look_up.
-    void weigh(const PathWeight& path_weight);
     /// Fills phase from half_tangent; `phases` is the number of phase functions in the table.
     void evaluate_phases(const PhaseTable& table, std::size_t phases);
 };

@@ -99,7 +99,8 @@ std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedSc
     paths.share_out(samples);
     return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
         thread_local PixelResult result;
-        paths.render(x, y, {.number = 0, .samples = samples}, [](int) {}, result, &sum);
+        paths.render(
+            x, y, {.number = 0, .samples = samples}, [](int) {}, result, &sum);
         return result.pixel_factor / samples;
     });
 }
@@ -171,7 +172,8 @@ void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, int
         thread_local PixelView view;
         pixels.trace(x, y, view);
         terms.begin(weights.at(x, y), pixels.pixel_factor(view) / samples);
-        paths.render(x, y, {.number = 0, .samples = samples}, [](int) {}, result, &terms);
+        paths.render(
+            x, y, {.number = 0, .samples = samples}, [](int) {}, result, &terms);
         terms.finish();
     });
 }

@@ -251,13 +251,14 @@ class TileLists {
     explicit TileLists(const PixelWindow& window)
         : window_(window),
           columns_((window.width() + k_snow_tile - 1) / k_snow_tile),
-          lists_(static_cast<std::size_t>(columns_ * ((window.height() + k_snow_tile - 1) / k_snow_tile))) {}
+          lists_(static_cast<std::size_t>(columns_ *
+                                          ((window.height() + k_snow_tile - 1) / k_snow_tile))) {}
 
     void add(std::uint32_t index, const PixelWindow& bounds) {
         const PixelWindow inside = intersection(bounds, window_);
         if (inside.width() <= 0 || inside.height() <= 0) return;
-        for (int j = (inside.y0 - window_.y0) / k_snow_tile; j <= (inside.y1 - 1 - window_.y0) / k_snow_tile;
-             ++j)
+        for (int j = (inside.y0 - window_.y0) / k_snow_tile;
+             j <= (inside.y1 - 1 - window_.y0) / k_snow_tile; ++j)
             for (int i = (inside.x0 - window_.x0) / k_snow_tile;
                  i <= (inside.x1 - 1 - window_.x0) / k_snow_tile; ++i)
                 lists_[static_cast<std::size_t>(j * columns_ + i)].push_back(index);

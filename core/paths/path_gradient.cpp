@@ -62,8 +62,7 @@ void PathGradient::finish() {
         const double begin = i > 0 ? reaches[i - 1].distance : 0;
         const Corner& camera = corners_.front();
         gradient_.add_column(camera.position + begin * camera.in,
-                             camera.position + reaches[i].distance * camera.in,
-                             reaches[i].weights);
+                             camera.position + reaches[i].distance * camera.in, reaches[i].weights);
     }
     count_ = reach_count_ = 0;
 }
@@ -103,8 +102,7 @@ void PathGradient::add_scattering(const Point3& x, const Vector3& in, const Vect
     weights_.assign(constituents_, 0.0);
     for (std::size_t b = 0; b < bands_; ++b) {
         double beta = 0;
-        for (std::size_t m = 0; m < p_.size(); ++m)
-            beta += medium.uniform.scattering[m][b] * p_[m];
+        for (std::size_t m = 0; m < p_.size(); ++m) beta += medium.uniform.scattering[m][b] * p_[m];
         for (std::size_t k = 0; k < constituents_; ++k) {
             per_unit_[k] = 0;
             for (std::size_t m = 0; m < p_.size(); ++m)

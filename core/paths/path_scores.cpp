@@ -14,6 +14,11 @@ namespace {
 // What a change does not move is found again where it was, to rounding in single precision.
 constexpr double k_same_place = 1e-4;
 
+bool has_same_origin(const Lamp& a, const Lamp& b) {
+    if (a.sunlight() != nullptr && b.sunlight() != nullptr) return *a.sunlight() == *b.sunlight();
+    return a.position() == b.position();
+}
+
 }  // namespace
 
 ChangedScenes::Side::Side(const LitScene& of)
@@ -21,19 +26,19 @@ ChangedScenes::Side::Side(const LitScene& of)
 
 ChangedScenes::ChangedScenes(const LitScene& scene, std::span<const SceneChange> changes)
     : bands_(static_cast<std::size_t>(scene.medium->band_count())),
-      constituents_(scene.medium->constituents.size()),
-      phase_count_(scene.medium->phase_functions.size()) {
+      constituents_(scene.medium->constituents.size()) {
     sides_.emplace_back(scene);
     const auto add = [&](const LitScene& side) {
         if (static_cast<std::size_t>(side.medium->band_count()) != bands_ ||
-            side.medium->constituents.size() != constituents_ ||
-            side.medium->phase_functions.size() != phase_count_)
+            side.medium->constituents.size() != constituents_)
             throw UsageError("what the water is made of, or its bands, changes with the number");
         if (side.emitters->size() != scene.emitters->size())
             throw UsageError("the number of lamps, or of the points that they consist of, changes");
         sides_.emplace_back(side);
         sides_.back().has_same_field = side.field == scene.field;
         sides_.back().has_same_surfaces = side.surfaces == scene.surfaces;
+        moves_light_ = moves_light_ || side.field != scene.field ||
+                       !std::ranges::equal(*side.emitters, *scene.emitters, has_same_origin);
     };
     for (const SceneChange& change : changes) {
         add(change.less);
@@ -66,6 +71,7 @@ int PathScores::turn(int before, const PathTurn& turn) {
 
 void PathScores::find(const PathTerm& term, std::span<double> scores) {
     const Corner& from = corners_[static_cast<std::size_t>(term.turn)];
+    has_columns_ = !term.columns.empty() && !scenes_.moves_light_;
     const bool is_event = term.hit != nullptr || term.emitter != k_no_emitter;
     PathTurn::Kind kind = PathTurn::Kind::camera;
     if (is_event)
@@ -82,6 +88,7 @@ void PathScores::find(const PathTerm& term, std::span<double> scores) {
     } else {
         add_seen_lamp(term.lamp, scores);
     }
+    has_columns_ = false;
 }
 
 // After add_lamp, which leaves the columns to the lamp.
@@ -130,6 +137,7 @@ void PathScores::place(Corner& corner, PathTurn::Kind kind, const Point3& positi
         for (std::size_t i = 0; i < sides.size(); ++i) {
             if (i > 0 && sides[i].has_same_field) continue;
             corner.concentration.resize(corner.concentration.size() + count);
+            if (has_columns_) continue;
             sides[i].scene.field->sample(position, std::span(corner.concentration).last(count));
         }
         // Fields that differ do so by the difference of their values.
@@ -158,8 +166,8 @@ std::size_t place_among(const Sides& sides, const Side& side, const Shares& shar
 
 std::span<const double> PathScores::concentrations(const Side& side, const Corner& corner) const {
     const std::size_t count = scenes_.constituents_;
-    const std::size_t place = place_among(scenes_.sides_, side,
-                                          [](const Side& each) { return each.has_same_field; });
+    const std::size_t place =
+        place_among(scenes_.sides_, side, [](const Side& each) { return each.has_same_field; });
     return std::span(corner.concentration).subspan(place * count, count);
 }
 
@@ -170,7 +178,7 @@ const SurfaceHit& PathScores::hit(const Side& side, const Corner& corner) const 
 
 void PathScores::column(const Side& side, const Point3& from, const Point3& to) {
     column_.assign(scenes_.constituents_, 0.0);
-    if (!column_.empty()) side.scene.field->column(from, to, column_);
+    if (!column_.empty() && !has_columns_) side.scene.field->column(from, to, column_);
 }
 
 void PathScores::add_way(const Point3& from, const Point3& to, std::span<double> scores) {
@@ -184,7 +192,8 @@ void PathScores::add_way(const Point3& from, const Point3& to, std::span<double>
             const std::vector<double>& columns = side.has_same_field ? base_column_ : column_;
             const double factor = -sign / scenes_.steps_[i];
             for (std::size_t b = 0; b < bands; ++b)
-                scores[i * bands + b] += factor * side.attenuation.optical_depth(b, length, columns);
+                scores[i * bands + b] +=
+                    factor * side.attenuation.optical_depth(b, length, columns);
         };
         depths(scenes_.more(i), 1);
         depths(scenes_.less(i), -1);
@@ -208,8 +217,8 @@ void PathScores::add_relative(const Find& find, std::span<double> scores) {
 void PathScores::add_response(const Corner& corner, const Vector3& out, std::span<double> scores) {
     if (corner.kind != PathTurn::Kind::scattered && corner.kind != PathTurn::Kind::reflected)
         return;
-    add_relative(
-        [&](const Side& side, Spectrum& values) { respond(side, corner, out, values); }, scores);
+    add_relative([&](const Side& side, Spectrum& values) { respond(side, corner, out, values); },
+                 scores);
 }
 
 void PathScores::respond(const Side& side, const Corner& corner, const Vector3& out,
@@ -225,7 +234,7 @@ void PathScores::respond(const Side& side, const Corner& corner, const Vector3& 
         return;
     }
     const Medium& medium = *side.scene.medium;
-    p_.resize(scenes_.phase_count_);
+    p_.resize(medium.phase_functions.size());
     const double h = half_tangent_between(corner.in, out);
     side.phases.evaluate(std::span(&h, 1), p_);
     const std::span<const double> concentration = concentrations(side, corner);
@@ -251,8 +260,8 @@ void PathScores::shine(const Side& side, const Corner& corner, std::size_t emitt
     const double aside =
         corner.kind == PathTurn::Kind::scattered ? lamp.aside({corner.position, corner.in}) : 0;
     const double radius = std::sqrt(length * length + aside);
-    const double light = lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) /
-                         lamp.spread(radius);
+    const double light =
+        lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) / lamp.spread(radius);
     respond(side, corner, to_lamp / length, values);
     for (std::size_t b = 0; b < bands; ++b) values[b] *= light * lamp.axis_intensity()[b];
     const bool is_base = &side == &scenes_.base();
@@ -277,7 +286,8 @@ void PathScores::add_lamp(const Corner& corner, std::size_t emitter, std::span<d
         for (std::size_t b = 0; b < bands; ++b) {
             if (!(value[b] > 0)) continue;
             const double relative = (more[b] - less[b]) / value[b];
-            scores[i * bands + b] += (relative - (depth_more[b] - depth_less[b])) / scenes_.steps_[i];
+            scores[i * bands + b] +=
+                (relative - (depth_more[b] - depth_less[b])) / scenes_.steps_[i];
         }
     }
 }
@@ -289,8 +299,8 @@ Spectrum PathScores::emission(const Side& side, const Corner& corner) const {
 }
 
 void PathScores::add_emission(const Corner& corner, std::span<double> scores) {
-    add_relative(
-        [&](const Side& side, Spectrum& values) { values = emission(side, corner); }, scores);
+    add_relative([&](const Side& side, Spectrum& values) { values = emission(side, corner); },
+                 scores);
 }
 
 // What a lamp looks like changes with its power alone.

@@ -12,9 +12,9 @@
 
 namespace uw {
 
-/// A scene with one of its numbers a little less and a little more than it is: of the same
-/// constituents, phase functions and emitters, each in the same order, and of surfaces of the same
-/// shape, which may reflect otherwise.
+/// A scene with one of its numbers a little less and a little more than it is, or as it is: of the
+/// same constituents and emitters, in the same order, and of surfaces of the same shape, which may
+/// reflect otherwise.
 struct SceneChange {
     LitScene less, more;
     double step = 0;  // by how much the number differs between the two, in its unit
@@ -50,7 +50,8 @@ class ChangedScenes {
     std::vector<Side> sides_;  // of the scene; then less and more of each change
     std::vector<double> steps_;
     std::vector<std::size_t> first_emitters_;  // of each lamp
-    std::size_t bands_ = 0, constituents_ = 0, phase_count_ = 0;
+    std::size_t bands_ = 0, constituents_ = 0;
+    bool moves_light_ = false;  // or what it passes: another field, or lamps elsewhere
 };
 
 /// By how much the light of paths changes with numbers of a scene, relative to what it is: the
@@ -116,7 +117,8 @@ class PathScores {
     std::size_t count_ = 0;  // of those in use
     Corner last_;
     std::vector<double> column_, base_column_, p_;
-    Point3 base_origin_;  // of the lamp's light, at the other end of base_column_
+    bool has_columns_ = false;  // of the term, and needs no others
+    Point3 base_origin_;        // of the lamp's light, at the other end of base_column_
 };
 
 }  // namespace uw

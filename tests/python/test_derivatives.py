@@ -171,9 +171,7 @@ def test_derivatives_leave_the_image_as_it_is_and_outlive_it(murky):
 @pytest.mark.parametrize("changes, name, message", [
     ({}, "water.absorbtion", "unknown; use water.absorption"),
     ({}, "concentration.small", "the volumes hold nothing"),
-    ({"render.integrator": "reference"}, "water.absorption", "choose integrator volume"),
-    ({"render.scattering": "multiple"}, "water.absorption",
-     "more than once is the mean over random paths and has none; set render.scattering to single"),
+    ({"render.integrator": "reference"}, "water.absorption", "integrators volume and path"),
     ({"water.forward_scatter": {"K": 0.1, "G": 0.1, "B": 0.1}}, "water.absorption",
      "blurs the finished image, .*; remove water.forward_scatter, or set its K to 0"),
     ({"water.snow": {"number": 2000, "diameter": ["0.2 mm", "5 mm"]}}, "water.absorption",

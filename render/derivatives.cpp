@@ -1,10 +1,11 @@
-#include "render/scene_derivatives.h"
+#include "render/derivatives.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/base/available_memory.h"
@@ -13,15 +14,17 @@
 #include "core/light/integrator_table.h"
 #include "core/passes/derivative_images.h"
 #include "media/volumes/voxel_gradient.h"
+#include "media/water/water_model.h"
 #include "render/exposure.h"
 
 namespace uw {
 
 namespace {
 
-void refuse_other_images(const AssembledScene& scene) {
-    const auto refuse = [](const std::string& what) {
-        throw UsageError("derivatives: " + what);
+// `name`: what the image is differentiated by, for messages.
+void refuse_other_images(const AssembledScene& scene, const std::string& name) {
+    const auto refuse = [&](const char* what) {
+        throw UsageError(fmt::format("derivative {}: {}", printable(name), what));
     };
     const LayerPlan plan = layer_plan(scene.image, {});
     if (plan.is_provided(Layer::forward))
@@ -49,7 +52,7 @@ void refuse_other_images(const AssembledScene& scene) {
 void refuse_other_changes(const std::string& name, const SceneDesc& desc,
                           const SceneDesc& changed) {
     const auto refuse = [&](const char* what) {
-        throw UsageError(fmt::format("derivatives: {}: {}", printable(name), what));
+        throw UsageError(fmt::format("derivative {}: {}", printable(name), what));
     };
     for (const char* const key : {"camera", "cameras", "rig", "render", "frames", "sensors"})
         if (name.starts_with(key))
@@ -58,7 +61,8 @@ void refuse_other_changes(const std::string& name, const SceneDesc& desc,
                 "derivatives by differences of Camera.project");
     if (changed.water.surface != desc.water.surface)
         refuse("the water's surface moves all light; take differences of images");
-    if (changed.geometry.size() != desc.geometry.size()) refuse("it changes what surfaces there are");
+    if (changed.geometry.size() != desc.geometry.size())
+        refuse("it changes what surfaces there are");
     for (std::size_t i = 0; i < desc.geometry.size(); ++i) {
         GeometryDesc other = changed.geometry[i];
         other.reflectance = desc.geometry[i].reflectance;
@@ -109,11 +113,24 @@ auto by_light(Renderer& renderer, const RenderOptions& options, const ByPaths& b
     return by_quadrature(pixel_renderer(scene, transport), water, window);
 }
 
+std::vector<float> derivative_images(Renderer& renderer, std::span<const SceneChange> changes,
+                                     const RenderOptions& options, const ShareCallback& progress) {
+    const ChangedScenes changed(renderer.assemble().lit(), changes);
+    return by_light(
+        renderer, options,
+        [&](const PixelRenderer& pixels, const PixelWindow& window, int samples) {
+            return path_derivatives(pixels, changed, window, samples, progress);
+        },
+        [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
+            return quadrature_derivatives(pixels, water, changed, window, progress);
+        });
+}
+
 }  // namespace
 
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
                                      const RenderOptions& options, const ShareCallback& progress) {
-    refuse_other_images(renderer.assemble());
+    refuse_other_images(renderer.assemble(), changes.empty() ? "" : changes.front().name);
     const ImageScene itself = renderer.scene();
     std::vector<std::unique_ptr<const KeptScene>> kept;
     std::vector<SceneChange> lit;
@@ -128,23 +145,108 @@ std::vector<float> scene_derivatives(Renderer& renderer, std::span<const Changed
         lit.push_back({less, assembled(change.name, change.more), change.step});
     }
     renderer.set_scene(itself);
+    return derivative_images(renderer, lit, options, progress);
+}
+
+namespace {
+
+constexpr std::string_view k_concentration = "concentration.";
+constexpr std::string_view k_small = "water.particles.small", k_large = "water.particles.large";
+
+/// The uniform water's phase function by itself: its parts, per unit of scattering.
+std::vector<Spectrum> shares_of_scattering(const Medium& medium) {
+    const Spectrum total = medium.uniform.total_scattering();
+    std::vector<Spectrum> shares = medium.uniform.scattering;
+    for (std::size_t b = 0; b < medium.wavelengths_nm.size(); ++b) {
+        if (!(total[b] > 0))
+            throw UsageError(
+                fmt::format("derivative water.scattering: the water does not scatter at {:g} nm, "
+                            "so that its phase function is unknown; give it some scattering",
+                            medium.wavelengths_nm[b]));
+        for (Spectrum& share : shares) share[b] /= total[b];
+    }
+    return shares;
+}
+
+ParticleDerivative derivative_by_particles(const AssembledScene& scene, const std::string& name) {
+    try {
+        return particle_derivative(scene.desc().water, scene.desc().volumes,
+                                   name == k_small ? WaterParticles::small : WaterParticles::large);
+    } catch (const UsageError& fault) {
+        throw UsageError(fmt::format("derivative {}: {}", name, fault.what()));
+    }
+}
+
+std::size_t constituent_called(const std::string& name, const Medium& medium) {
+    const std::string_view wanted = std::string_view(name).substr(k_concentration.size());
+    const auto found = std::ranges::find(medium.constituents, wanted, &Constituent::name);
+    if (found == medium.constituents.end()) {
+        std::string there;
+        for (const Constituent& constituent : medium.constituents)
+            there += (there.empty() ? "" : ", ") + printable(constituent.name);
+        throw UsageError(fmt::format("derivative {}: the volumes hold {}", printable(name),
+                                     there.empty() ? "nothing" : there));
+    }
+    return static_cast<std::size_t>(found - medium.constituents.begin());
+}
+
+/// The medium with one more of what `name` says: everything is linear in it.
+Medium with_one_more(const std::string& name, const AssembledScene& scene) {
+    Medium medium = scene.water.medium;
+    const auto bands = static_cast<std::size_t>(medium.band_count());
+    if (name.starts_with(k_concentration)) {
+        OpticalCoefficients& unit = medium.constituents[constituent_called(name, medium)].per_unit;
+        unit.absorption *= 2.0;
+        for (Spectrum& b : unit.scattering) b *= 2.0;
+    } else if (name == k_small || name == k_large) {
+        ParticleDerivative particles = derivative_by_particles(scene, name);
+        // The water's own phase functions, and those of the particles beyond them.
+        const std::size_t phases = particles.phase_functions.size();
+        medium.phase_functions = std::move(particles.phase_functions);
+        medium.uniform.scattering.resize(phases);
+        medium.uniform.absorption += particles.per_ppm.absorption;
+        for (std::size_t m = 0; m < phases; ++m)
+            medium.uniform.scattering[m] += particles.per_ppm.scattering[m];
+        for (Constituent& constituent : medium.constituents)
+            constituent.per_unit.scattering.resize(phases);
+    } else if (name == "water.absorption") {
+        for (double& a : medium.uniform.absorption.first(bands)) a += 1;
+    } else if (name == "water.scattering") {
+        const std::vector<Spectrum> shares = shares_of_scattering(medium);
+        for (std::size_t m = 0; m < shares.size(); ++m) medium.uniform.scattering[m] += shares[m];
+    } else {
+        throw UsageError(
+            fmt::format("derivative '{}': unknown; use water.absorption, water.scattering, "
+                        "water.particles.small, water.particles.large or concentration.NAME of a "
+                        "constituent",
+                        printable(name)));
+    }
+    return medium;
+}
+
+}  // namespace
+
+std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::string> names,
+                                     const RenderOptions& options, const ShareCallback& progress) {
     const AssembledScene& scene = renderer.assemble();
-    const ChangedScenes changed(scene.lit(), lit);
-    return by_light(
-        renderer, options,
-        [&](const PixelRenderer& pixels, const PixelWindow& window, int samples) {
-            return path_derivatives(pixels, changed, window, samples, progress);
-        },
-        [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
-            return quadrature_derivatives(pixels, water, changed, window, progress);
-        });
+    refuse_other_images(scene, names.empty() ? "" : names.front());
+    std::vector<Medium> media;
+    media.reserve(names.size());
+    std::vector<SceneChange> changes;
+    for (const std::string& name : names) {
+        media.push_back(with_one_more(name, scene));
+        SceneChange change{scene.lit(), scene.lit(), 1.0};
+        change.more.medium = &media.back();
+        changes.push_back(change);
+    }
+    return derivative_images(renderer, changes, options, progress);
 }
 
 namespace {
 
 // Copies of the gradient for the parts of an image may take this much memory, or two.
 constexpr double k_gradient_bytes = 256e6;
-constexpr std::size_t k_most_parts = 16;
+constexpr std::size_t k_most_gradients = 16;
 
 }  // namespace
 
@@ -152,7 +254,7 @@ std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
                                      std::span<const double> weights, const RenderOptions& options,
                                      const ShareCallback& progress) {
     const AssembledScene& scene = renderer.assemble();
-    refuse_other_images(scene);
+    refuse_other_images(scene, fmt::format("volumes[{}].array", volume));
     const std::vector<VolumeDesc>& volumes = scene.desc().volumes;
     if (volume >= volumes.size() || volumes[volume].array == nullptr)
         throw UsageError(
@@ -161,7 +263,7 @@ std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
     const std::array<std::size_t, 3> size = volumes[volume].array->size;
     const double bytes = 8.0 * static_cast<double>(size[0] * size[1] * size[2]);
     const auto parts = static_cast<std::size_t>(
-        std::clamp(k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_most_parts}));
+        std::clamp(k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_most_gradients}));
     require_memory(bytes * static_cast<double>(parts), "the derivatives by voxel need",
                    "use fewer voxels");
     std::vector<std::unique_ptr<FieldGradient>> gradients;

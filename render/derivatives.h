@@ -31,11 +31,25 @@ struct ChangedScene {
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
                                      const RenderOptions& options, const ShareCallback& progress);
 
+/// The derivatives of the image by each of
+///
+/// - "water.absorption", "water.scattering": the uniform water's coefficient in each band, its
+///   phase function as it is [per 1/m]. Bands do not affect each other: each pixel has one
+///   derivative per band.
+/// - "water.particles.small", "water.particles.large": the concentration of the water's own
+///   particles (particle_derivative) [per ppm].
+/// - "concentration.NAME": a factor on all concentrations of a constituent of the volumes, at 1.
+///
+/// As scene_derivatives, which differ in that a key of the scene has to be written there; throws
+/// UsageError for other names.
+std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::string> names,
+                                     const RenderOptions& options, const ShareCallback& progress);
+
 /// The derivatives of a number by the values of a grid that is in memory (VolumeDesc::array), from
-/// its derivatives by the light of the pixels of options.window, row by row, `weights` [pixel][band]:
-/// by value (i, j, k), [(i * size[1] + j) * size[2] + k] of LoadedGrid::size. As scene_derivatives;
-/// where nothing scatters, it is as if nothing were added that does. Throws UsageError if volume
-/// `volume` is none in memory.
+/// its derivatives by the light of the pixels of options.window, row by row, `weights`
+/// [pixel][band]: by value (i, j, k), [(i * size[1] + j) * size[2] + k] of LoadedGrid::size. As
+/// scene_derivatives; where nothing scatters, it is as if nothing were added that does. Throws
+/// UsageError if volume `volume` is none in memory.
 std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
                                      std::span<const double> weights, const RenderOptions& options,
                                      const ShareCallback& progress);
