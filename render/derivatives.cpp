@@ -282,7 +282,8 @@ std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
             path_gradient(pixels, weights_of(window), samples, gradients, progress);
         },
         [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
-            quadrature_gradient(pixels, water, weights_of(window), gradients, progress);
+            const bool all = scene.desc().render.quality == RenderDesc::Quality::exact;
+            quadrature_gradient(pixels, water, weights_of(window), all, gradients, progress);
         });
     std::vector<float> sums(by_part.front()->values().size());
     for (std::size_t i = 0; i < sums.size(); ++i) {

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <cmath>
+#include <cstdint>
 
 #include "core/base/available_memory.h"
 #include "core/base/parallel.h"
+#include "core/base/random.h"
 #include "core/passes/path_pass.h"
 #include "core/passes/pixel_terms.h"
 
@@ -113,22 +116,70 @@ class WorthOfTerms final : public PathTerms {
     WorthOfTerms(const GradientTables& tables, FieldGradient& gradient, std::size_t bands)
         : gradient_(tables, gradient), factors_(bands), worth_(bands) {}
 
-    /// The number's derivative by the light of the terms that follow.
-    void begin(std::span<const double> weights, double factor) {
+    /// Of the many terms on a ray, a few stand for all from now on, without bias: drawn evenly
+    /// along the sum of what they are worth.
+    void thin() { is_thinned_ = true; }
+    /// The number's derivative by the light of the terms that follow, those of a pixel.
+    void begin(std::span<const double> weights, double factor, std::uint64_t pixel) {
         for (std::size_t b = 0; b < factors_.size(); ++b) factors_[b] = factor * weights[b];
+        random_ = PathRandom(PathRandom::seed_of(pixel, 0, 0), 0);
     }
-    void finish() { gradient_.finish(); }
-    int turn(int before, const PathTurn& turn) override { return gradient_.turn(before, turn); }
+    void finish() {
+        take_kept();
+        gradient_.finish();
+    }
+    int turn(int before, const PathTurn& turn) override {
+        if (before == k_no_turn) take_kept();
+        return gradient_.turn(before, turn);
+    }
     void add(const PathTerm& term) override {
-        for (std::size_t b = 0; b < factors_.size(); ++b)
+        double size = 0;
+        for (std::size_t b = 0; b < factors_.size(); ++b) {
             worth_[b] = factors_[b] * term.radiance[b];
-        gradient_.add(term, worth_);
+            size += std::abs(worth_[b]);
+        }
+        if (!is_thinned_) {
+            gradient_.add(term, worth_);
+            return;
+        }
+        kept_.push_back({term, size, worth_});
+        total_ += size;
     }
 
   private:
+    struct Kept {
+        PathTerm term;
+        double size;
+        std::vector<double> worth;
+    };
+
+    void take_kept() {
+        constexpr double k_of_ray = 8;
+        const double step = total_ / k_of_ray;
+        double next = kept_.empty() ? 0 : random_.next() * step, before = 0;
+        for (Kept& kept : kept_) {
+            before += kept.size;
+            int times = 0;
+            for (; next < before; next += step) ++times;
+            if (times == 0) continue;
+            for (double& worth : kept.worth) worth *= times * step / kept.size;
+            gradient_.add(kept.term, kept.worth);
+        }
+        kept_.clear();
+        total_ = 0;
+    }
+
     PathGradient gradient_;
     std::vector<double> factors_, worth_;
+    bool is_thinned_ = false;
+    std::vector<Kept> kept_;
+    double total_ = 0;
+    PathRandom random_{0, 0};
 };
+
+std::uint64_t number_of(int x, int y) {
+    return (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
+}
 
 /// Calls `render(x, y, terms)` for each pixel, row by row, in as many parts as there are gradients.
 template <class Render>
@@ -150,14 +201,15 @@ void gather(const LitScene& scene, const PixelWeights& weights, FieldGradients g
 }  // namespace
 
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
-                         const PixelWeights& weights, FieldGradients gradients,
+                         const PixelWeights& weights, bool all_nodes, FieldGradients gradients,
                          const ShareCallback& progress) {
     gather(pixels.scene(), weights, gradients, progress, [&](int x, int y, WorthOfTerms& terms) {
         thread_local PixelView view;
         thread_local SurfaceLight light;
         pixels.trace(x, y, view);
         pixels.light_surfaces(std::span(&view, 1), light);
-        terms.begin(weights.at(x, y), pixels.pixel_factor(view));
+        if (!all_nodes) terms.thin();
+        terms.begin(weights.at(x, y), pixels.pixel_factor(view), number_of(x, y));
         add_quadrature_terms(pixels, water, view, light, terms);
         terms.finish();
     });
@@ -171,7 +223,7 @@ void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, int
         thread_local PixelResult result;
         thread_local PixelView view;
         pixels.trace(x, y, view);
-        terms.begin(weights.at(x, y), pixels.pixel_factor(view) / samples);
+        terms.begin(weights.at(x, y), pixels.pixel_factor(view) / samples, number_of(x, y));
         paths.render(
             x, y, {.number = 0, .samples = samples}, [](int) {}, result, &terms);
         terms.finish();

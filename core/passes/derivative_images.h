@@ -51,9 +51,11 @@ struct PixelWeights {
 /// each part of the image, that is rendered in one thread.
 using FieldGradients = std::span<const std::unique_ptr<FieldGradient>>;
 
-/// Gathers them. Otherwise as quadrature_derivatives.
+/// Gathers them, from `all_nodes` of each ray, or from a few that are drawn and stand for all
+/// without bias: tracing what lies between a node and its lamp is what takes the time. Otherwise as
+/// quadrature_derivatives.
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
-                         const PixelWeights& weights, FieldGradients gradients,
+                         const PixelWeights& weights, bool all_nodes, FieldGradients gradients,
                          const ShareCallback& progress);
 /// As path_derivatives.
 void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, int samples,

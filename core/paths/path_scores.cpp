@@ -37,8 +37,6 @@ ChangedScenes::ChangedScenes(const LitScene& scene, std::span<const SceneChange>
         sides_.emplace_back(side);
         sides_.back().has_same_field = side.field == scene.field;
         sides_.back().has_same_surfaces = side.surfaces == scene.surfaces;
-        moves_light_ = moves_light_ || side.field != scene.field ||
-                       !std::ranges::equal(*side.emitters, *scene.emitters, has_same_origin);
     };
     for (const SceneChange& change : changes) {
         add(change.less);
@@ -71,7 +69,6 @@ int PathScores::turn(int before, const PathTurn& turn) {
 
 void PathScores::find(const PathTerm& term, std::span<double> scores) {
     const Corner& from = corners_[static_cast<std::size_t>(term.turn)];
-    has_columns_ = !term.columns.empty() && !scenes_.moves_light_;
     const bool is_event = term.hit != nullptr || term.emitter != k_no_emitter;
     PathTurn::Kind kind = PathTurn::Kind::camera;
     if (is_event)
@@ -79,31 +76,13 @@ void PathScores::find(const PathTerm& term, std::span<double> scores) {
     place(last_, kind, term.place, term.hit, &from, term.concentration);
     std::ranges::copy(from.scores, scores.begin());
     add_response(from, last_.in, scores);
-    add_way(from.position, last_.position, scores);
-    if (term.emitter != k_no_emitter) {
-        add_lamp(last_, term.emitter, scores);
-        if (!term.columns.empty()) add_correction(term, from, scores);
-    } else if (term.hit != nullptr) {
+    if (term.columns.empty()) add_way(from.position, last_.position, scores);
+    if (term.emitter != k_no_emitter)
+        add_lamp(term, scores);
+    else if (term.hit != nullptr)
         add_emission(last_, scores);
-    } else {
+    else
         add_seen_lamp(term.lamp, scores);
-    }
-    has_columns_ = false;
-}
-
-// After add_lamp, which leaves the columns to the lamp.
-void PathScores::add_correction(const PathTerm& term, const Corner& from,
-                                std::span<double> scores) {
-    const std::size_t bands = scenes_.bands();
-    column(scenes_.base(), from.position, last_.position);
-    for (std::size_t i = 0; i < scenes_.changes(); ++i)
-        for (std::size_t k = 0; k < column_.size(); ++k) {
-            const double missing = term.columns[k] - column_[k] - base_column_[k];
-            const Spectrum& less = scenes_.less(i).attenuation.constituents[k];
-            const Spectrum& more = scenes_.more(i).attenuation.constituents[k];
-            for (std::size_t b = 0; b < bands; ++b)
-                scores[i * bands + b] -= (more[b] - less[b]) * missing / scenes_.steps_[i];
-        }
 }
 
 void PathScores::place(Corner& corner, PathTurn::Kind kind, const Point3& position,
@@ -137,7 +116,6 @@ void PathScores::place(Corner& corner, PathTurn::Kind kind, const Point3& positi
         for (std::size_t i = 0; i < sides.size(); ++i) {
             if (i > 0 && sides[i].has_same_field) continue;
             corner.concentration.resize(corner.concentration.size() + count);
-            if (has_columns_) continue;
             sides[i].scene.field->sample(position, std::span(corner.concentration).last(count));
         }
         // Fields that differ do so by the difference of their values.
@@ -176,24 +154,23 @@ const SurfaceHit& PathScores::hit(const Side& side, const Corner& corner) const 
                                    [](const Side& each) { return each.has_same_surfaces; })];
 }
 
-void PathScores::column(const Side& side, const Point3& from, const Point3& to) {
-    column_.assign(scenes_.constituents_, 0.0);
-    if (!column_.empty() && !has_columns_) side.scene.field->column(from, to, column_);
+void PathScores::find_column(const Side& side, const Point3& from, const Point3& to,
+                             std::vector<double>& column) const {
+    column.assign(scenes_.constituents_, 0.0);
+    if (!column.empty()) side.scene.field->column(from, to, column);
 }
 
 void PathScores::add_way(const Point3& from, const Point3& to, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     const double length = distance(from, to);
-    column(scenes_.base(), from, to);
-    base_column_ = column_;
+    find_column(scenes_.base(), from, to, base_column_);
     for (std::size_t i = 0; i < scenes_.changes(); ++i) {
         const auto depths = [&](const Side& side, double sign) {
-            if (!side.has_same_field) column(side, from, to);
+            if (!side.has_same_field) find_column(side, from, to, column_);
             const std::vector<double>& columns = side.has_same_field ? base_column_ : column_;
             const double factor = -sign / scenes_.steps_[i];
             for (std::size_t b = 0; b < bands; ++b)
-                scores[i * bands + b] +=
-                    factor * side.attenuation.optical_depth(b, length, columns);
+                scores[i * bands + b] += factor * side.attenuation.optical_depth(b, length, columns);
         };
         depths(scenes_.more(i), 1);
         depths(scenes_.less(i), -1);
@@ -250,46 +227,80 @@ void PathScores::respond(const Side& side, const Corner& corner, const Vector3& 
     }
 }
 
-void PathScores::shine(const Side& side, const Corner& corner, std::size_t emitter,
-                       Spectrum& values, Spectrum& depth) {
-    const std::size_t bands = scenes_.bands();
+double PathScores::shine(const Side& side, const Corner& corner, std::size_t emitter,
+                         Spectrum& values) {
     const Lamp& lamp = (*side.scene.emitters)[emitter];
-    const Point3 origin = lamp.origin(corner.position);
-    const Vector3 to_lamp = origin - corner.position;
+    const Vector3 to_lamp = lamp.origin(corner.position) - corner.position;
     const double length = glm::length(to_lamp);
     const double aside =
         corner.kind == PathTurn::Kind::scattered ? lamp.aside({corner.position, corner.in}) : 0;
     const double radius = std::sqrt(length * length + aside);
-    const double light =
-        lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) / lamp.spread(radius);
+    const double light = lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) /
+                         lamp.spread(radius);
     respond(side, corner, to_lamp / length, values);
-    for (std::size_t b = 0; b < bands; ++b) values[b] *= light * lamp.axis_intensity()[b];
-    const bool is_base = &side == &scenes_.base();
-    const bool is_same = !is_base && side.has_same_field && origin == base_origin_;
-    if (!is_same) column(side, origin, corner.position);
-    if (is_base) {
-        base_column_ = column_;
-        base_origin_ = origin;
-    }
-    const std::vector<double>& columns = is_same ? base_column_ : column_;
-    for (std::size_t b = 0; b < bands; ++b)
-        depth[b] = side.attenuation.optical_depth(b, radius, columns);
+    for (std::size_t b = 0; b < scenes_.bands(); ++b)
+        values[b] *= light * lamp.axis_intensity()[b];
+    return radius;
 }
 
-void PathScores::add_lamp(const Corner& corner, std::size_t emitter, std::span<double> scores) {
+void PathScores::add_lamp(const PathTerm& term, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
-    Spectrum value, less, more, depth, depth_less, depth_more;
-    shine(scenes_.base(), corner, emitter, value, depth);
+    Spectrum value, less, more;
+    shine(scenes_.base(), last_, term.emitter, value);
     for (std::size_t i = 0; i < scenes_.changes(); ++i) {
-        shine(scenes_.less(i), corner, emitter, less, depth_less);
-        shine(scenes_.more(i), corner, emitter, more, depth_more);
-        for (std::size_t b = 0; b < bands; ++b) {
-            if (!(value[b] > 0)) continue;
-            const double relative = (more[b] - less[b]) / value[b];
-            scores[i * bands + b] +=
-                (relative - (depth_more[b] - depth_less[b])) / scenes_.steps_[i];
+        const double radius_less = shine(scenes_.less(i), last_, term.emitter, less);
+        const double radius_more = shine(scenes_.more(i), last_, term.emitter, more);
+        for (std::size_t b = 0; b < bands; ++b)
+            if (value[b] > 0)
+                scores[i * bands + b] += (more[b] - less[b]) / (scenes_.steps_[i] * value[b]);
+        add_depth(term, i, radius_less, radius_more, scores);
+    }
+}
+
+void PathScores::add_depth(const PathTerm& term, std::size_t change, double radius_less,
+                           double radius_more, std::span<double> scores) {
+    const std::size_t bands = scenes_.bands();
+    const Side& less = scenes_.less(change);
+    const Side& more = scenes_.more(change);
+    const Lamp& lamp_less = (*less.scene.emitters)[term.emitter];
+    const Lamp& lamp_more = (*more.scene.emitters)[term.emitter];
+    const bool is_field_same = less.has_same_field && more.has_same_field;
+    const bool is_same = is_field_same && has_same_origin(lamp_less, lamp_more);
+    double way = 0;  // with the columns of the lamp's light
+    if (!term.columns.empty()) {
+        const Point3& from = corners_[static_cast<std::size_t>(term.turn)].position;
+        way = distance(from, term.place);
+    }
+    if (is_same && !term.columns.empty()) {
+        less_.assign(term.columns.begin(), term.columns.end());
+        more_ = less_;
+    } else {
+        find_column(less, lamp_less.origin(term.place), term.place, less_);
+        if (is_same)
+            more_ = less_;
+        else
+            find_column(more, lamp_more.origin(term.place), term.place, more_);
+        if (!term.columns.empty()) {
+            if (!is_field_same) {
+                const Point3& from = corners_[static_cast<std::size_t>(term.turn)].position;
+                find_column(less, from, term.place, column_);
+                add(less_, column_);
+                find_column(more, from, term.place, column_);
+                add(more_, column_);
+            }
+            // Around the columns that the term was computed with.
+            for (std::size_t k = 0; k < less_.size(); ++k) {
+                const double missing = term.columns[k] - 0.5 * (less_[k] + more_[k]);
+                less_[k] += missing;
+                more_[k] += missing;
+            }
         }
     }
+    for (std::size_t b = 0; b < bands; ++b)
+        scores[change * bands + b] -=
+            (more.attenuation.optical_depth(b, way + radius_more, more_) -
+             less.attenuation.optical_depth(b, way + radius_less, less_)) /
+            scenes_.steps_[change];
 }
 
 Spectrum PathScores::emission(const Side& side, const Corner& corner) const {

@@ -51,7 +51,6 @@ class ChangedScenes {
     std::vector<double> steps_;
     std::vector<std::size_t> first_emitters_;  // of each lamp
     std::size_t bands_ = 0, constituents_ = 0;
-    bool moves_light_ = false;  // or what it passes: another field, or lamps elsewhere
 };
 
 /// By how much the light of paths changes with numbers of a scene, relative to what it is: the
@@ -95,19 +94,21 @@ class PathScores {
     std::span<const double> concentrations(const Side& side, const Corner& corner) const;
     const SurfaceHit& hit(const Side& side, const Corner& corner) const;
     void add_way(const Point3& from, const Point3& to, std::span<double> scores);
-    // The difference that the columns of a term make against those of the field.
-    void add_correction(const PathTerm& term, const Corner& from, std::span<double> scores);
     void add_response(const Corner& corner, const Vector3& out, std::span<double> scores);
-    void add_lamp(const Corner& corner, std::size_t emitter, std::span<double> scores);
+    void add_lamp(const PathTerm& term, std::span<double> scores);
     void add_emission(const Corner& corner, std::span<double> scores);
     void add_seen_lamp(std::size_t lamp, std::span<double> scores);
     void respond(const Side& side, const Corner& corner, const Vector3& out, Spectrum& values);
-    // Intensity over distance squared times the response at the corner; and the optical depth. The
-    // scene itself comes before its changes.
-    void shine(const Side& side, const Corner& corner, std::size_t emitter, Spectrum& values,
-               Spectrum& depth);
+    // Intensity over distance squared times the response at the corner; returns the distance that
+    // the light has come.
+    double shine(const Side& side, const Corner& corner, std::size_t emitter, Spectrum& values);
+    // Adds what the optical depth of light makes that comes from an emitter, after these distances;
+    // of a term with columns, of all its way.
+    void add_depth(const PathTerm& term, std::size_t change, double radius_less,
+                   double radius_more, std::span<double> scores);
     Spectrum emission(const Side& side, const Corner& corner) const;
-    void column(const Side& side, const Point3& from, const Point3& to);
+    void find_column(const Side& side, const Point3& from, const Point3& to,
+                     std::vector<double>& column) const;
     // Adds (more - less) / (step times the value) of what `find` finds for a side.
     template <class Find>
     void add_relative(const Find& find, std::span<double> scores);
@@ -116,9 +117,7 @@ class PathScores {
     std::vector<Corner> corners_;
     std::size_t count_ = 0;  // of those in use
     Corner last_;
-    std::vector<double> column_, base_column_, p_;
-    bool has_columns_ = false;  // of the term, and needs no others
-    Point3 base_origin_;        // of the lamp's light, at the other end of base_column_
+    std::vector<double> column_, base_column_, less_, more_, p_;
 };
 
 }  // namespace uw
