@@ -273,11 +273,11 @@ def test_backward_to_voxels(scene):
         expected = central(lambda h: render(h, direction), 0.04)
         assert (gradient * direction).sum() == pytest.approx(
             expected, abs=tolerance * np.linalg.norm(direction))
-    # At final a few nodes of each ray stand for all. For so many rays their noise is 0.2.
-    many = dict(gradient=rng.normal(size=(24, 36, 3)), of="volumes[0].array", size=(36, 24))
+    # At final a few nodes of each ray stand for all. For so many rays their noise is 0.12.
+    many = dict(gradient=np.ones((24, 36, 3)), of="volumes[0].array", size=(36, 24))
     exact = image.backward(**many)["volumes[0].array"]
     drawn = image.backward(**many, quality="final")["volumes[0].array"]
-    assert 0 < np.linalg.norm(drawn - exact) < 0.5 * np.linalg.norm(exact)
+    assert 0 < np.linalg.norm(drawn - exact) < 0.3 * np.linalg.norm(exact)
 
 
 @pytest.mark.parametrize("path, direction, step", [
