@@ -23,6 +23,7 @@
 #include "fit/picture_residuals.h"
 #include "fit/point_residuals.h"
 #include "fit/robust_fit.h"
+#include "fit/target_sheet.h"
 #include "fit/unknowns.h"
 
 namespace uw {
@@ -37,6 +38,7 @@ const char* const k_fit_examples = R"(Examples:
         --unknown camera.port.distance,camera.port.normal
   uwvdb fit dive.yaml --images 'dive/%04d.png' -o fitted.yaml \
         --unknown water.absorption,water.scattering.b,lamps.*.intensity
+  uwvdb fit --target board.pdf --paper a3
 
 Finds numbers of a scene, each with its standard error, by robust least squares, and says what the
 observations cannot tell. CORNERS.csv has the columns image, x, y, z, u, v and perhaps medium: the
@@ -45,7 +47,7 @@ the image shows them [pixels; the image's corner is (0, 0)], in water, in air be
 or bare, without a port. Poses are found with the rest. With --board OpenCV finds the corners of a
 checkerboard in photographs. Without, pictures are held against the images of the
 scene, frame by frame, cell by cell: raw numbers if its camera has a sensor, else light (OpenEXR) or
-what sRGB makes of it (PNG, JPEG).
+what sRGB makes of it (PNG, JPEG). --target writes a sheet with a board to print, and needs no scene.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted.)";
 
@@ -70,7 +72,8 @@ Assumption read_assumption(const std::string& option, const std::string& text,
 }
 
 struct FitArguments {
-    std::filesystem::path scene, points, images, corners, output, page, csv;
+    std::filesystem::path scene, points, images, corners, output, page, csv, target;
+    std::optional<Paper> paper;
     std::optional<BoardDesc> board;
     std::vector<std::string> overrides, unknowns;
     std::vector<Assumption> priors, bounds;
@@ -83,8 +86,7 @@ struct FitArguments {
 
 Options fit_options(FitArguments& a) {
     Options options;
-    options.path("SCENE", "", a.scene, "scene file, with values from where to begin").required =
-        true;
+    options.path("SCENE", "", a.scene, "scene file, with values from where to begin");
     options.path("--points", "CORNERS.csv", a.points, "points, and where images show them");
     options.path("--images", "PICTURE", a.images,
                  "photographs of the scene; %04d is the frame's number");
@@ -107,7 +109,6 @@ Options fit_options(FitArguments& a) {
             }
         },
         "what to find: paths as of --set; * stands for every entry");
-    unknown.required = true;
     unknown.repeatable = true;
     options
         .parsed(
@@ -145,6 +146,13 @@ Options fit_options(FitArguments& a) {
                  "write the scene with what was found, all else as it is");
     options.path("--report", "PAGE.html", a.page, "write a page with tables and plots");
     options.path("--csv", "FILE", a.csv, "write all residuals as a table");
+    options.path("--target", "SHEET.pdf", a.target,
+                 "write a sheet to print, with a checkerboard, and end");
+    Option& paper = options.parsed(
+        "--paper", "SIZE", [&a](const std::string& text) { a.paper = read_paper(text); },
+        "paper of --target: a4 (as it is if omitted), a3 or letter");
+    paper.value = Option::Value::word;
+    paper.words = {"a4", "a3", "letter"};
     options.flag("--json", a.json, "print everything as JSON instead of a table");
     options.threads(a.threads);
     options.messages(a.quiet, a.progress);
@@ -185,7 +193,24 @@ std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
     return text.text();
 }
 
+void write_target(const FitArguments& a) {
+    if (!a.scene.empty())
+        throw UsageError(
+            "--target: writes a sheet to print, and fits nothing; leave the scene out");
+    const Paper paper = a.paper ? *a.paper : read_paper("a4");
+    TextFiles files;
+    files.add(a.target, target_pdf(a.board ? *a.board : board_for(paper), paper));
+    files.commit(a.quiet);
+}
+
 void run_fit(const FitArguments& a) {
+    if (a.scene.empty())
+        throw UsageError(
+            "fit: give the scene, as in 'uwvdb fit SCENE.yaml'; see 'uwvdb fit --help'");
+    if (a.unknowns.empty())
+        throw UsageError(
+            "--unknown: give what to find, such as camera.port.distance; see 'uwvdb fit --help'");
+    if (a.paper) throw UsageError("--paper: is that of a sheet to print; give --target SHEET.pdf");
     if (a.points.empty() == a.images.empty())
         throw UsageError("give either --points, a table of corners, or --images, photographs");
     if (a.board && a.images.empty())
@@ -244,7 +269,10 @@ Command fit_command() {
     return {"fit", "find numbers of a scene from what photographs show", k_fit_examples,
             fit_options(*arguments), [arguments] {
                 install_stop_signal();
-                run_fit(*arguments);
+                if (arguments->target.empty())
+                    run_fit(*arguments);
+                else
+                    write_target(*arguments);
                 return k_exit_done;
             }};
 }
