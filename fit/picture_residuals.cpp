@@ -15,6 +15,7 @@
 #include "core/geometry/mesh.h"
 #include "core/image/camera_sensor.h"
 #include "core/image/image_file.h"
+#include "core/scene/pose_file.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -109,6 +110,17 @@ class MeanNumbers {
     SensorDesc sensor_;
 };
 
+/// The image of a scene that a picture shows.
+ImageScene scene_of_picture(const SceneDesc& scene, const ObservedPicture& picture) {
+    if (!picture.world_from_camera) return scene_of_image(scene, picture.choice);
+    SceneDesc posed = scene;
+    const TrajectoryDesc place =
+        posed.camera.trajectory ? *posed.camera.trajectory : TrajectoryDesc();
+    posed.camera.world_from_camera = placed(*picture.world_from_camera, place).affine();
+    posed.camera.trajectory.reset();
+    return {std::move(posed), picture.choice};
+}
+
 PixelImage read_picture(const std::filesystem::path& file) {
     const std::string ending = file.extension().string();
     const bool holds_light = ending == ".exr" || ending == ".hdr" || ending == ".EXR";
@@ -134,6 +146,10 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     std::vector<double> start;
     for (const SceneUnknown& unknown : unknowns_.all()) start.push_back(unknown.start);
     const SceneDesc scene = unknowns_.scene(start);
+    if (scene.rig_trajectory && !files_.empty() && files_.front().world_from_camera)
+        throw InputError(
+            fmt::format("{}: moves the rig, and --poses the camera in it; take one of them out",
+                        scene.rig_trajectory->where));
     if (scene.camera.sensor) {
         refuse_developed(*scene.camera.sensor);
         colours_ = colour_count(scene.camera.sensor->mosaic);
@@ -227,7 +243,7 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
     std::size_t next = 0;
     for (std::size_t picture = 0; picture < files_.size(); ++picture) {
         throw_if_stopped();
-        const ImageScene whole = scene_of_image(scene, files_[picture].choice);
+        const ImageScene whole = scene_of_picture(scene, files_[picture]);
         Renderer& renderer = renderers_[picture];
         renderer.set_scene(
             whole.with([&](SceneDesc& desc) { resize_image(desc.camera, width_, height_); }));

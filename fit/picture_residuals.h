@@ -4,11 +4,13 @@
 #include <cstddef>
 #include <deque>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/scene/scene_desc.h"
+#include "core/scene/trajectory.h"
 #include "fit/robust_fit.h"
 #include "fit/unknowns.h"
 #include "render/renderer.h"
@@ -21,6 +23,9 @@ namespace uw {
 struct ObservedPicture {
     std::filesystem::path file;
     ImageChoice choice;
+    /// In the place of the scene's, before the `transform` of its camera's trajectory, if it has
+    /// one.
+    std::optional<Pose> world_from_camera{};
 };
 
 /// The pictures that a name stands for: a file, or, with a pattern for the frame's number

@@ -20,6 +20,7 @@
 #include "core/base/text.h"
 #include "edit/document/scene_text.h"
 #include "fit/board_corners.h"
+#include "fit/picture_poses.h"
 #include "fit/picture_residuals.h"
 #include "fit/point_residuals.h"
 #include "fit/robust_fit.h"
@@ -72,7 +73,7 @@ Assumption read_assumption(const std::string& option, const std::string& text,
 }
 
 struct FitArguments {
-    std::filesystem::path scene, points, images, corners, output, page, csv, target;
+    std::filesystem::path scene, points, images, poses, corners, output, page, csv, target;
     std::optional<Paper> paper;
     std::optional<BoardDesc> board;
     std::vector<std::string> overrides, unknowns;
@@ -90,6 +91,9 @@ Options fit_options(FitArguments& a) {
     options.path("--points", "CORNERS.csv", a.points, "points, and where images show them");
     options.path("--images", "PICTURE", a.images,
                  "photographs of the scene; %04d is the frame's number");
+    options.path("--poses", "MODEL", a.poses,
+                 "a COLMAP model or transforms.json with the camera's poses, by the pictures' "
+                 "names; --images may then be their folder");
     options.parsed(
         "--board", "COLUMNSxROWSxSIDE",
         [&a](const std::string& text) { a.board = read_board(text); },
@@ -217,6 +221,9 @@ void run_fit(const FitArguments& a) {
         throw UsageError("--board: is looked for in --images; give these instead of --points");
     if (!a.corners.empty() && !a.board)
         throw UsageError("--corners: are those of a board; give its --board, such as 9x6x0.03");
+    if (!a.poses.empty() && (a.board || a.images.empty()))
+        throw UsageError(
+            "--poses: are those of --images without --board; of corners poses are found");
     const SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns);
     FitOptions options;
     options.priors = priors_of(a, unknowns);
@@ -224,6 +231,9 @@ void run_fit(const FitArguments& a) {
     options.keeps_outliers = a.keeps_outliers;
     std::unique_ptr<Observations> observations;
     const PictureResiduals* pictures = nullptr;
+    const auto warn = [](const std::string& line) {
+        print_message(fmt::format("warning: {}\n", line));
+    };
     TextFiles files;
     if (!a.points.empty()) {
         observations = std::make_unique<PointResiduals>(
@@ -232,14 +242,14 @@ void run_fit(const FitArguments& a) {
         std::vector<std::filesystem::path> pictures_of_it;
         for (const ObservedPicture& picture : pictures_called(a.images))
             pictures_of_it.push_back(picture.file);
-        PointTable corners = find_board_corners(
-            pictures_of_it, *a.board,
-            [](const std::string& line) { print_message(fmt::format("warning: {}\n", line)); });
+        PointTable corners = find_board_corners(pictures_of_it, *a.board, warn);
         if (!a.corners.empty()) files.add(a.corners, point_csv(corners));
         observations = std::make_unique<PointResiduals>(unknowns, std::move(corners));
     } else {
-        auto seen =
-            std::make_unique<PictureResiduals>(unknowns, pictures_called(a.images), a.cells);
+        auto seen = std::make_unique<PictureResiduals>(
+            unknowns,
+            a.poses.empty() ? pictures_called(a.images) : posed_pictures(a.images, a.poses, warn),
+            a.cells);
         pictures = seen.get();
         observations = std::move(seen);
     }

@@ -1,11 +1,16 @@
 // ctest labels: metamorphic
 // Water and lamps from pictures that were rendered with others.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "core/base/json.h"
+#include "core/scene/trajectory.h"
+#include "render/scene_loading.h"
 #include "tests/support/fit_pictures.h"
 
 namespace uw::test {
@@ -45,6 +50,67 @@ TEST_F(FitPictures, GainAndBrightnessCannotBeToldApart) {
     EXPECT_NE(first.find("camera.sensor.gain"), std::string::npos) << first;
     EXPECT_NE(first.find("lamps.left.intensity[0]"), std::string::npos) << first;
     EXPECT_NE(first.find("cannot be told apart"), std::string::npos) << first;
+}
+
+/// A COLMAP model in the scene's axes, at half the scale: k_dive's keyframes, of which it has not
+/// registered the second, and a picture that is not there.
+std::string colmap_model(const SceneDesc& scene) {
+    std::string text = "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n";
+    for (const int frame : {0, 2, 7}) {
+        const Affine world_from_camera =
+            scene.camera.trajectory->trajectory->at(std::min(frame, 2)).affine();
+        const Pose pose = pose_of(world_from_camera.inverse());
+        const Rotation& q = pose.rotation;
+        text += fmt::format(
+            "{} {:.12g} {:.12g} {:.12g} {:.12g} {:.12g} {:.12g} {:.12g} 1 "
+            "dive_{:02}.exr\n\n",
+            frame + 1, q.w, q.x, q.y, q.z, 0.5 * pose.position.x, 0.5 * pose.position.y,
+            0.5 * pose.position.z, frame);
+    }
+    return text;
+}
+
+// The camera's poses and the pictures' names from COLMAP, and the scale of its world as one of the
+// unknowns. The scene's own poses are elsewhere.
+TEST_F(FitPictures, ByPosesOfNames) {
+    take_pictures("");
+    const std::string dive = read("dive.yaml");
+    std::filesystem::create_directories(folder_ / "model");
+    write("model/images.txt", colmap_model(load_scene(folder_ / "dive.yaml", {})));
+    std::string text = dive;
+    const std::size_t begin = text.find("  trajectory:"), end = text.find("\nwater:") + 1;
+    text.replace(begin, end - begin,
+                 "  trajectory: {file: model/images.txt, transform: {scale: 2.2}}\n");
+    write("dive.yaml", text);
+    const auto fitted = [&](const std::string& images, const std::string& unknown) {
+        return run({"fit", "dive.yaml", "--images", images, "--poses", "model", "--unknown",
+                    unknown, "--cells", "12", "--json"});
+    };
+    const ProgramResult of_folder = fitted(".", "camera.trajectory.transform.scale");
+    ASSERT_EQ(of_folder.exit_code, 0) << of_folder.err;
+    EXPECT_NE(of_folder.err.find("has none of 1 picture that --poses names"), std::string::npos)
+        << of_folder.err;
+    const Json found = Json::parse(of_folder.out);
+    EXPECT_EQ(found.at("images").size(), 2U);
+    // Cells of 13 pixels stand for their middle: what light does within them to second order.
+    expect_found(found, {{"camera.trajectory.transform.scale", 2}}, 0, 0.01);
+
+    text.replace(text.find("2.2"), 3, "2");
+    write("dive.yaml", text);
+    const ProgramResult of_frames = fitted("dive_%02d.exr", "lamps.left.intensity");
+    ASSERT_EQ(of_frames.exit_code, 0) << of_frames.err;
+    EXPECT_NE(of_frames.err.find("dive_01.exr: --poses has no pose of it; passed over"),
+              std::string::npos)
+        << of_frames.err;
+    expect_found(Json::parse(of_frames.out), {{"lamps.left.intensity[1]", 32}}, 0, 0.01);
+
+    EXPECT_NE(fitted("fit_%02d.exr", "water.absorption").err.find("there is no such picture"),
+              std::string::npos);
+    write("model/images.txt", "1 1 0 0 0 0 0 0 1 other.png\n\n");
+    EXPECT_NE(fitted(".", "water.absorption")
+                  .err.find("--poses: none of its 1 pose is of a picture of .; the names "
+                            "must agree, as in 'other.png'"),
+              std::string::npos);
 }
 
 TEST_F(FitPictures, RefusesWhatIsNotThePictureOfTheScene) {
