@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "camera/camera.h"
@@ -15,6 +16,7 @@
 #include "core/geometry/mesh.h"
 #include "core/image/camera_sensor.h"
 #include "core/image/image_file.h"
+#include "core/light/integrator_table.h"
 #include "core/scene/pose_file.h"
 #include "render/scene_loading.h"
 
@@ -22,9 +24,24 @@ namespace uw {
 
 namespace {
 
+bool has_all_light(const SceneDesc& scene) {
+    return scattering_of(scene.render) == RenderDesc::Scattering::multiple;
+}
+
 /// What a prediction may be off by for reasons of its own: shadows and tables are exact to about
-/// that at a scene's usual quality.
-constexpr double k_model_error = 1e-3;
+/// 1e-3 at a scene's usual quality, and light that is scattered more than once, which is found by
+/// random paths, to 1e-2.
+double model_error(const SceneDesc& scene) {
+    return has_all_light(scene) ? 1e-2 : 1e-3;
+}
+
+/// By how much of their scales unknowns are moved for derivatives, to either side. Light is
+/// interpolated, so that smaller steps would measure the tables; of larger ones central differences
+/// are off by the square. Random paths are the same ones on both sides but for where they end,
+/// which smaller steps would measure.
+double step_of(const SceneDesc& scene) {
+    return has_all_light(scene) ? 1e-1 : 1e-2;
+}
 
 void refuse_developed(const SensorDesc& sensor) {
     if (sensor.image.is_raw) return;
@@ -154,6 +171,9 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
         refuse_developed(*scene.camera.sensor);
         colours_ = colour_count(scene.camera.sensor->mosaic);
     }
+    has_all_light_ = has_all_light(scene);
+    model_error_ = model_error(scene);
+    step_ = step_of(scene);
     width_ = std::min(cells, scene.camera.width);
     cell_side_ = static_cast<double>(scene.camera.width) / width_;
     height_ = std::max(1, static_cast<int>(std::lround(scene.camera.height / cell_side_)));
@@ -221,7 +241,7 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
             constexpr double k_like_noise = 4;
             const std::optional<double> noise = values.variance(cell.mean[k]);
             if (noise && variance < k_like_noise * *noise) variance = *noise;
-            cell.error[k] = std::sqrt(variance / count + std::pow(k_model_error * cell.mean[k], 2));
+            cell.error[k] = std::sqrt(variance / count + std::pow(model_error_ * cell.mean[k], 2));
         }
         found[index] = cell;
     });
@@ -231,14 +251,18 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
     for (std::optional<Cell>& cell : found) {
         if (!cell || !(brightest > 0)) continue;
         // Where all is dark, nothing is known to better than what the bright parts are known to.
-        for (double& error : cell->error)
-            error = std::hypot(error, 0.1 * k_model_error * brightest);
+        for (double& error : cell->error) error = std::hypot(error, 0.1 * model_error_ * brightest);
         cells_.push_back(*cell);
     }
 }
 
-PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> values) {
-    const SceneDesc scene = unknowns_.scene(values);
+PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> values,
+                                                       Light light) {
+    SceneDesc scene = unknowns_.scene(values);
+    if (light == Light::scattered_once && has_all_light(scene)) {
+        scene.render.integrator = RenderDesc::Integrator::volume;
+        scene.render.scattering = RenderDesc::Scattering::single;
+    }
     Prediction prediction(cells_.size());
     std::size_t next = 0;
     for (std::size_t picture = 0; picture < files_.size(); ++picture) {
@@ -280,80 +304,76 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
     return prediction;
 }
 
-void PictureResiduals::move_groups(std::span<const double> shared) {
-    if (moved_.empty()) {
-        moved_.resize(shared.size());
-        together_.resize(shared.size());
-        for (std::size_t i = 0; i < shared.size(); ++i) {
-            moved_[i].group = i;
-            together_[i].unknowns = {i};
+void PictureResiduals::group_unknowns(std::span<const double> shared) {
+    moved_.resize(shared.size());
+    std::vector<std::array<bool, 3>> taken;  // per group
+    // Where light is scattered once, what does not depend on an unknown stays the same to the bit.
+    const Prediction before = predict(shared, Light::scattered_once);
+    for (std::size_t i = 0; i < shared.size(); ++i) {
+        std::vector<double> values(shared.begin(), shared.end());
+        const SceneUnknown& unknown = unknowns_.all()[i];
+        const double step = step_ * unknown.scale;
+        values[i] = values[i] + step <= unknown.upper ? values[i] + step : values[i] - step;
+        const Prediction after = predict(values, Light::scattered_once);
+        std::array<bool, 3>& colours = moved_[i].colours;
+        for (std::size_t k = 0; k < colours.size(); ++k)
+            colours[k] = !std::ranges::equal(
+                before, after, {}, [&](const Colours& a) { return a[k]; },
+                [&](const Colours& a) { return a[k]; });
+        // Only what is scattered again may depend on it.
+        if (std::ranges::none_of(colours, [](bool depends) { return depends; }))
+            colours = {true, true, true};
+        const auto overlaps = [&](const std::array<bool, 3>& other) {
+            for (std::size_t k = 0; k < other.size(); ++k)
+                if (other[k] && colours[k]) return true;
+            return false;
+        };
+        const auto place = std::ranges::find_if_not(taken, overlaps);
+        moved_[i].group = static_cast<std::size_t>(place - taken.begin());
+        if (place == taken.end()) {
+            taken.push_back(colours);
+            together_.push_back({{i}, {}, {}});
+            continue;
         }
+        for (std::size_t k = 0; k < colours.size(); ++k)
+            if (colours[k]) (*place)[k] = true;
+        together_[moved_[i].group].unknowns.push_back(i);
     }
-    // Light is interpolated, so that small steps would measure the tables; of larger ones central
-    // differences are off by the square, 1e-4.
-    constexpr double k_step = 1e-2;
+}
+
+void PictureResiduals::take_derivatives(std::span<const double> shared) {
+    if (moved_.empty()) group_unknowns(shared);
+    derivatives_at_.clear();
     for (Together& group : together_) {
         std::vector<double> back(shared.begin(), shared.end()), ahead = back;
         for (const std::size_t i : group.unknowns) {
             const SceneUnknown& unknown = unknowns_.all()[i];
-            back[i] = std::max(shared[i] - k_step * unknown.scale, unknown.lower);
-            ahead[i] = std::min(shared[i] + k_step * unknown.scale, unknown.upper);
+            back[i] = std::max(shared[i] - step_ * unknown.scale, unknown.lower);
+            ahead[i] = std::min(shared[i] + step_ * unknown.scale, unknown.upper);
             moved_[i].step = ahead[i] - back[i];
         }
-        group.back = predict(back);
-        group.ahead = predict(ahead);
+        group.back = predict(back, Light::of_the_scene);
+        group.ahead = predict(ahead, Light::of_the_scene);
     }
+    derivatives_at_.assign(shared.begin(), shared.end());
 }
 
-void PictureResiduals::group_unknowns() {
-    is_grouped_ = true;
-    std::vector<Together> groups;
-    std::vector<std::array<bool, 3>> taken;  // per group
-    for (std::size_t i = 0; i < moved_.size(); ++i) {
-        const Together& alone = together_[i];
-        for (std::size_t k = 0; k < moved_[i].colours.size(); ++k) {
-            moved_[i].colours[k] = false;
-            for (std::size_t cell = 0; cell < cells_.size(); ++cell)
-                if (alone.back[cell][k] != alone.ahead[cell][k]) moved_[i].colours[k] = true;
-        }
-        const auto overlaps = [&](const std::array<bool, 3>& other) {
-            for (std::size_t k = 0; k < other.size(); ++k)
-                if (other[k] && moved_[i].colours[k]) return true;
+bool PictureResiduals::has_derivatives_near(std::span<const double> shared) const {
+    if (derivatives_at_.empty()) return false;
+    for (std::size_t i = 0; i < shared.size(); ++i)
+        if (std::abs(shared[i] - derivatives_at_[i]) > step_ * unknowns_.all()[i].scale)
             return false;
-        };
-        const auto place = std::ranges::find_if_not(taken, overlaps);
-        const auto group = static_cast<std::size_t>(place - taken.begin());
-        if (place == taken.end()) {
-            groups.push_back(alone);
-            taken.push_back(moved_[i].colours);
-        } else {
-            Together& shared = groups[group];
-            shared.unknowns.push_back(i);
-            for (std::size_t k = 0; k < place->size(); ++k) {
-                if (!moved_[i].colours[k]) continue;
-                (*place)[k] = true;
-                for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-                    shared.back[cell][k] = alone.back[cell][k];
-                    shared.ahead[cell][k] = alone.ahead[cell][k];
-                }
-            }
-        }
-        moved_[i].group = group;
-    }
-    together_ = std::move(groups);
+    return true;
 }
 
 bool PictureResiduals::prepare(std::span<const double> shared, bool with_derivatives) {
-    const bool is_same = std::ranges::equal(shared, prepared_);
-    if (is_same && (has_derivatives_ || !with_derivatives)) return true;
     try {
-        if (!is_same) prediction_ = predict(shared);
-        prepared_.assign(shared.begin(), shared.end());
-        has_derivatives_ = false;
-        if (!with_derivatives) return true;
-        move_groups(shared);
-        if (!is_grouped_) group_unknowns();
-        has_derivatives_ = true;
+        if (!std::ranges::equal(shared, prepared_)) {
+            prepared_.clear();
+            prediction_ = predict(shared, Light::of_the_scene);
+            prepared_.assign(shared.begin(), shared.end());
+        }
+        if (with_derivatives && !has_derivatives_near(shared)) take_derivatives(shared);
         return true;
     } catch (const InputError&) {
         prepared_.clear();
@@ -386,6 +406,32 @@ std::vector<ResidualGroup> PictureResiduals::groups() const {
 Observations::Place PictureResiduals::place(std::size_t group) const {
     const Cell& cell = cells_[group];
     return {cell.picture, {(cell.x + 0.5) * cell_side_, (cell.y + 0.5) * cell_side_}};
+}
+
+double PictureResiduals::convergence() const {
+    return has_all_light_ ? 1e-4 : Observations::convergence();
+}
+
+double PictureResiduals::clustering(std::span<const double> residuals,
+                                    const std::vector<bool>& outliers) const {
+    constexpr int k_blocks_across = 5;
+    const int side = std::max(1, width_ / k_blocks_across);
+    // By picture, block and colour; of independent residuals the square of a sum is, in the mean,
+    // the sum of the squares.
+    std::map<std::array<std::size_t, 4>, double> sums;
+    double squares = 0;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        if (outliers[i]) continue;
+        for (std::size_t k = 0; k < colours_; ++k) {
+            const double residual = residuals[i * colours_ + k];
+            sums[{cells_[i].picture, static_cast<std::size_t>(cells_[i].x / side),
+                  static_cast<std::size_t>(cells_[i].y / side), k}] += residual;
+            squares += residual * residual;
+        }
+    }
+    double of_blocks = 0;
+    for (const auto& [block, sum] : sums) of_blocks += sum * sum;
+    return squares > 0 ? std::max(1.0, of_blocks / squares) : 1;
 }
 
 double PictureResiduals::relative_rms(const FitResult& result) const {

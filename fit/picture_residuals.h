@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <filesystem>
 #include <optional>
@@ -60,6 +61,11 @@ class PictureResiduals final : public Observations {
     const char* noun() const override { return "cell"; }
     const char* unit() const override { return "times the scatter"; }
     double of_group(double rms) const override { return rms; }
+    double convergence() const override;
+    /// Of the means over blocks of cells, five across a picture: what cells share, such as the
+    /// errors of light that is interpolated between nodes.
+    double clustering(std::span<const double> residuals,
+                      const std::vector<bool>& outliers) const override;
 
     /// The RMS of prediction less observation over the mean of what was observed, for the cells
     /// that `result` keeps.
@@ -83,10 +89,14 @@ class PictureResiduals final : public Observations {
     };
     using Prediction = std::vector<Colours>;  // of each cell
 
+    /// Which light: all that the scene has, or, which takes far less time, that scattered once.
+    enum class Light : std::uint8_t { of_the_scene, scattered_once };
+
     void read(std::size_t picture, const SceneDesc& scene);
-    Prediction predict(std::span<const double> values);
-    void move_groups(std::span<const double> shared);
-    void group_unknowns();
+    Prediction predict(std::span<const double> values, Light light);
+    void group_unknowns(std::span<const double> shared);
+    void take_derivatives(std::span<const double> shared);
+    bool has_derivatives_near(std::span<const double> shared) const;
 
     const SceneUnknowns& unknowns_;
     std::vector<ObservedPicture> files_;
@@ -96,16 +106,19 @@ class PictureResiduals final : public Observations {
     std::size_t colours_ = 3;
     std::vector<Cell> cells_;
     std::deque<Renderer> renderers_;  // one per picture, which keeps what does not change
-    std::vector<double> prepared_;    // for which unknowns; empty: none
-    bool has_derivatives_ = false;
+    bool has_all_light_ = false;
+    double model_error_ = 0, step_ = 0;
+    std::vector<double> prepared_;  // for which unknowns; empty: none
     Prediction prediction_;
+    /// Where derivatives were taken; empty: nowhere. They are differences over a step to either
+    /// side, and serve within it.
+    std::vector<double> derivatives_at_;
     /// Unknowns that are moved together, as no colour depends on two of them: those of bands.
     struct Together {
         std::vector<std::size_t> unknowns;
         Prediction back, ahead;
     };
     std::vector<Together> together_;
-    bool is_grouped_ = false;  // before, each unknown is moved by itself
     /// Per unknown: the colours that depend on it, in which of together_ it is, and its step from
     /// back to ahead.
     struct Moved {
