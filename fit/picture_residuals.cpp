@@ -35,19 +35,25 @@ double model_error(const SceneDesc& scene) {
     return has_all_light(scene) ? 1e-2 : 1e-3;
 }
 
-/// By how much of their scales unknowns are moved for derivatives, to either side. Light is
-/// interpolated, so that smaller steps would measure the tables; of larger ones central differences
-/// are off by the square. Random paths are the same ones on both sides but for where they end,
-/// which smaller steps would measure.
-double step_of(const SceneDesc& scene) {
-    return has_all_light(scene) ? 1e-1 : 1e-2;
+/// By how much unknowns are moved for derivatives, to either side. Light is interpolated, so that
+/// smaller steps would measure the tables; of larger ones central differences are off by the
+/// square. Of all light smaller steps would measure that the random paths are not quite the same
+/// ones on both sides.
+double step_of(const SceneUnknown& unknown, bool has_all_light) {
+    if (!has_all_light) return 1e-2 * unknown.scale;
+    return 1e-1 * std::max(std::abs(unknown.start), 0.25 * unknown.scale);
 }
+
+/// Pixels of a coarse image for all light, which has a node at each; with more of them, nodes are
+/// no denser (docs/multiple.md).
+constexpr double k_node_count = 4800;
 
 void refuse_developed(const SensorDesc& sensor) {
     if (sensor.image.is_raw) return;
     throw InputError(fmt::format(
         "{}: its images are developed, and raw numbers are compared; take camera.sensor.image "
-        "out and give raw pictures, or take camera.sensor out and give pictures of light",
+        "out and give raw pictures, or take camera.sensor out and let --unknown exposure,response "
+        "stand for what developed them",
         sensor.where));
 }
 
@@ -118,6 +124,11 @@ class MeanNumbers {
         if (sensor_.full_well) electrons = std::min(electrons, *sensor_.full_well);
         return sensor_.system_gain() * electrons + sensor_.black_level;
     }
+    /// What they are without light.
+    double dark() const {
+        return sensor_.system_gain() * sensor_.dark_current * sensor_.exposure.value() +
+               sensor_.black_level;
+    }
     double factor(const LensRay& ray, double focus_vergence) const {
         return electrons_.irradiance_factor(ray, focus_vergence);
     }
@@ -167,16 +178,31 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
         throw InputError(
             fmt::format("{}: moves the rig, and --poses the camera in it; take one of them out",
                         scene.rig_trajectory->where));
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+        const SceneUnknown& unknown = unknowns_.all()[i];
+        if (unknown.of == SceneUnknown::Of::exposure) exposures_.push_back(i);
+        if (unknown.of == SceneUnknown::Of::response) response_ = i;
+    }
     if (scene.camera.sensor) {
         refuse_developed(*scene.camera.sensor);
         colours_ = colour_count(scene.camera.sensor->mosaic);
+        dark_ = MeanNumbers(scene).dark();
+        if (response_)
+            throw UsageError(
+                "--unknown response: a sensor's raw numbers are in proportion to light; leave it "
+                "out");
     }
     has_all_light_ = has_all_light(scene);
     model_error_ = model_error(scene);
-    step_ = step_of(scene);
+    for (const SceneUnknown& unknown : unknowns_.all())
+        steps_.push_back(step_of(unknown, has_all_light_));
     width_ = std::min(cells, scene.camera.width);
     cell_side_ = static_cast<double>(scene.camera.width) / width_;
     height_ = std::max(1, static_cast<int>(std::lround(scene.camera.height / cell_side_)));
+    if (has_all_light_)
+        pixels_per_side_ =
+            std::clamp(static_cast<int>(std::ceil(std::sqrt(k_node_count / (width_ * height_)))), 1,
+                       std::max(1, static_cast<int>(cell_side_)));
     for (std::size_t i = 0; i < files_.size(); ++i) {
         names_.push_back(files_[i].file.filename().string());
         renderers_.emplace_back();
@@ -259,7 +285,8 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
 PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> values,
                                                        Light light) {
     SceneDesc scene = unknowns_.scene(values);
-    if (light == Light::scattered_once && has_all_light(scene)) {
+    const int side = light == Light::of_the_scene ? pixels_per_side_ : 1;
+    if (light == Light::scattered_once && has_all_light_) {
         scene.render.integrator = RenderDesc::Integrator::volume;
         scene.render.scattering = RenderDesc::Scattering::single;
     }
@@ -269,8 +296,8 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
         throw_if_stopped();
         const ImageScene whole = scene_of_picture(scene, files_[picture]);
         Renderer& renderer = renderers_[picture];
-        renderer.set_scene(
-            whole.with([&](SceneDesc& desc) { resize_image(desc.camera, width_, height_); }));
+        renderer.set_scene(whole.with(
+            [&](SceneDesc& desc) { resize_image(desc.camera, side * width_, side * height_); }));
         RenderOptions options;
         options.layers = "total";
         const Film& film = renderer.render(options);
@@ -278,13 +305,12 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
         std::optional<MeanNumbers> numbers;
         if (whole.desc().camera.sensor) numbers.emplace(whole.desc());
         const Camera camera(renderer.scene().desc().camera);
-        for (; next < cells_.size() && cells_[next].picture == picture; ++next) {
-            const Cell& cell = cells_[next];
-            const std::span<const float> pixel = film.pixel(cell.x, cell.y);
-            Colours& colours = prediction[next];
+        const auto colours_of = [&](int x, int y) {
+            const std::span<const float> pixel = film.pixel(x, y);
+            Colours colours{};
             if (numbers) {
-                const double factor = numbers->factor(camera.lens_ray(cell.x + 0.5, cell.y + 0.5),
-                                                      camera.focus_vergence());
+                const double factor =
+                    numbers->factor(camera.lens_ray(x + 0.5, y + 0.5), camera.focus_vergence());
                 // Three bands are red, green and blue themselves.
                 const std::size_t first =
                     plan.has(Layer::total)
@@ -299,9 +325,41 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
             } else {
                 for (std::size_t k = 0; k < colours_; ++k) colours[k] = double{pixel[k]};
             }
-        }
+            return colours;
+        };
+        for (; next < cells_.size() && cells_[next].picture == picture; ++next)
+            for (int i = 0; i < side * side; ++i) {
+                const Colours colours =
+                    colours_of(side * cells_[next].x + i % side, side * cells_[next].y + i / side);
+                for (std::size_t k = 0; k < colours_; ++k)
+                    prediction[next][k] += colours[k] / (side * side);
+            }
     }
     return prediction;
+}
+
+PictureResiduals::Seen PictureResiduals::seen(std::size_t cell, double light) const {
+    const double exposure = exposures_.empty() ? 1 : shared_[exposures_[cells_[cell].picture]];
+    const double power = response_ ? shared_[*response_] : 1;
+    const double exposed = exposure * (light - dark_);
+    if (!(exposed > 0)) return {dark_, 0, 0, 0};
+    const double value = power == 1 ? exposed : std::pow(exposed, power);
+    return {dark_ + value, power * value / (light - dark_), power * value / exposure,
+            value * std::log(exposed)};
+}
+
+std::vector<double> PictureResiduals::exposures_at(std::span<const double> shared) {
+    std::vector<double> seen(files_.size(), 0), predicted(files_.size(), 0);
+    if (!prepare(shared, false)) return std::vector<double>(files_.size(), 1);
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+        for (std::size_t k = 0; k < colours_; ++k) {
+            seen[cells_[i].picture] += cells_[i].mean[k] - dark_;
+            predicted[cells_[i].picture] += light_[i][k] - dark_;
+        }
+    for (std::size_t picture = 0; picture < files_.size(); ++picture)
+        seen[picture] =
+            seen[picture] > 0 && predicted[picture] > 0 ? seen[picture] / predicted[picture] : 1;
+    return seen;
 }
 
 void PictureResiduals::group_unknowns(std::span<const double> shared) {
@@ -312,7 +370,8 @@ void PictureResiduals::group_unknowns(std::span<const double> shared) {
     for (std::size_t i = 0; i < shared.size(); ++i) {
         std::vector<double> values(shared.begin(), shared.end());
         const SceneUnknown& unknown = unknowns_.all()[i];
-        const double step = step_ * unknown.scale;
+        if (unknown.of != SceneUnknown::Of::scene) continue;
+        const double step = steps_[i];
         values[i] = values[i] + step <= unknown.upper ? values[i] + step : values[i] - step;
         const Prediction after = predict(values, Light::scattered_once);
         std::array<bool, 3>& colours = moved_[i].colours;
@@ -348,35 +407,40 @@ void PictureResiduals::take_derivatives(std::span<const double> shared) {
         std::vector<double> back(shared.begin(), shared.end()), ahead = back;
         for (const std::size_t i : group.unknowns) {
             const SceneUnknown& unknown = unknowns_.all()[i];
-            back[i] = std::max(shared[i] - step_ * unknown.scale, unknown.lower);
-            ahead[i] = std::min(shared[i] + step_ * unknown.scale, unknown.upper);
+            back[i] = std::max(shared[i] - steps_[i], unknown.lower);
+            ahead[i] = std::min(shared[i] + steps_[i], unknown.upper);
             moved_[i].step = ahead[i] - back[i];
         }
-        group.back = predict(back, Light::of_the_scene);
-        group.ahead = predict(ahead, Light::of_the_scene);
+        group.back = predict(back, Light::coarsely);
+        group.ahead = predict(ahead, Light::coarsely);
     }
     derivatives_at_.assign(shared.begin(), shared.end());
 }
 
-bool PictureResiduals::has_derivatives_near(std::span<const double> shared) const {
-    if (derivatives_at_.empty()) return false;
-    for (std::size_t i = 0; i < shared.size(); ++i)
-        if (std::abs(shared[i] - derivatives_at_[i]) > step_ * unknowns_.all()[i].scale)
+bool PictureResiduals::is_near(std::span<const double> shared, std::span<const double> other,
+                               double steps) const {
+    if (other.empty()) return false;
+    for (std::size_t i = 0; i < shared.size(); ++i) {
+        const SceneUnknown& unknown = unknowns_.all()[i];
+        if (unknown.of == SceneUnknown::Of::scene &&
+            !(std::abs(shared[i] - other[i]) <= steps * steps_[i]))
             return false;
+    }
     return true;
 }
 
 bool PictureResiduals::prepare(std::span<const double> shared, bool with_derivatives) {
+    shared_.assign(shared.begin(), shared.end());
     try {
-        if (!std::ranges::equal(shared, prepared_)) {
-            prepared_.clear();
-            prediction_ = predict(shared, Light::of_the_scene);
-            prepared_.assign(shared.begin(), shared.end());
+        if (!is_near(shared, light_of_, 0)) {
+            light_of_.clear();
+            light_ = predict(shared, Light::of_the_scene);
+            light_of_ = shared_;
         }
-        if (with_derivatives && !has_derivatives_near(shared)) take_derivatives(shared);
+        if (with_derivatives && !is_near(shared, derivatives_at_, 1)) take_derivatives(shared);
         return true;
     } catch (const InputError&) {
-        prepared_.clear();
+        light_of_.clear();
         return false;  // no such scene: the solver takes a smaller step
     }
 }
@@ -386,14 +450,23 @@ bool PictureResiduals::evaluate(std::size_t group, const Block* /*block*/, doubl
     const Cell& cell = cells_[group];
     for (std::size_t k = 0; k < colours_; ++k) {
         const double error = cell.error[k] * deviation();
-        residuals[k] = (prediction_[group][k] - cell.mean[k]) / error;
+        const Seen predicted = seen(group, light_[group][k]);
+        residuals[k] = (predicted.value - cell.mean[k]) / error;
         if (by_shared == nullptr) continue;
-        for (std::size_t i = 0; i < moved_.size(); ++i) {
-            const Together& moved = together_[moved_[i].group];
-            by_shared[k * moved_.size() + i] =
-                moved_[i].colours[k]
-                    ? (moved.ahead[group][k] - moved.back[group][k]) / (moved_[i].step * error)
-                    : 0;
+        const std::size_t n = shared_.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            double derivative = 0;
+            if (unknowns_.all()[i].of != SceneUnknown::Of::scene) {
+                if (response_ && i == *response_)
+                    derivative = predicted.by_power;
+                else if (unknowns_.all()[i].picture == cell.picture)
+                    derivative = predicted.by_exposure;
+            } else if (moved_[i].colours[k]) {
+                const Together& moved = together_[moved_[i].group];
+                derivative = predicted.by_light * (moved.ahead[group][k] - moved.back[group][k]) /
+                             moved_[i].step;
+            }
+            by_shared[k * n + i] = derivative / error;
         }
     }
     return true;
@@ -462,7 +535,7 @@ PictureResiduals::Comparison PictureResiduals::comparison(std::size_t picture) c
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t colour = std::min(k, colours_ - 1);
             comparison.seen[index][k] = cell.mean[colour];
-            comparison.predicted[index][k] = prediction_[i][colour];
+            comparison.predicted[index][k] = seen(i, light_[i][colour]).value;
         }
     }
     return comparison;

@@ -42,7 +42,8 @@ std::vector<ObservedPicture> pictures_called(const std::filesystem::path& name);
 /// Scenes with a sensor predict its numbers as they are stored raw, from which the sensor's black
 /// level, gain, mosaic and efficiencies follow; other scenes red, green and blue, of pictures with
 /// linear values as they are, of others by the sRGB curve. Cells in which a pixel is white are left
-/// out.
+/// out. Unknown exposures multiply the light of each picture, and an unknown response is the power
+/// to which that is raised: 1 where a camera's curve is sRGB's.
 class PictureResiduals final : public Observations {
   public:
     /// `cells`: across a picture's width. `unknowns` outlive it. Throws InputError for pictures
@@ -67,6 +68,10 @@ class PictureResiduals final : public Observations {
     double clustering(std::span<const double> residuals,
                       const std::vector<bool>& outliers) const override;
 
+    /// By what the light of the scene with these unknowns, exposures of 1, is to be multiplied for
+    /// each picture to be as bright as it is.
+    std::vector<double> exposures_at(std::span<const double> shared);
+
     /// The RMS of prediction less observation over the mean of what was observed, for the cells
     /// that `result` keeps.
     double relative_rms(const FitResult& result) const;
@@ -89,14 +94,22 @@ class PictureResiduals final : public Observations {
     };
     using Prediction = std::vector<Colours>;  // of each cell
 
-    /// Which light: all that the scene has, or, which takes far less time, that scattered once.
-    enum class Light : std::uint8_t { of_the_scene, scattered_once };
+    /// Which light: all that the scene has; the same with no more nodes than cells, for
+    /// differences, in which their errors cancel; or, which takes far less time, that scattered
+    /// once.
+    enum class Light : std::uint8_t { of_the_scene, coarsely, scattered_once };
 
     void read(std::size_t picture, const SceneDesc& scene);
     Prediction predict(std::span<const double> values, Light light);
     void group_unknowns(std::span<const double> shared);
     void take_derivatives(std::span<const double> shared);
-    bool has_derivatives_near(std::span<const double> shared) const;
+    /// Whether scenes are within so many steps of each other.
+    bool is_near(std::span<const double> shared, std::span<const double> other, double steps) const;
+    /// What a cell shows of light that the scene predicts, and its derivatives.
+    struct Seen {
+        double value = 0, by_light = 0, by_exposure = 0, by_power = 0;
+    };
+    Seen seen(std::size_t cell, double light) const;
 
     const SceneUnknowns& unknowns_;
     std::vector<ObservedPicture> files_;
@@ -107,9 +120,15 @@ class PictureResiduals final : public Observations {
     std::vector<Cell> cells_;
     std::deque<Renderer> renderers_;  // one per picture, which keeps what does not change
     bool has_all_light_ = false;
-    double model_error_ = 0, step_ = 0;
-    std::vector<double> prepared_;  // for which unknowns; empty: none
-    Prediction prediction_;
+    int pixels_per_side_ = 1;  // rendered of a cell
+    double model_error_ = 0;
+    std::vector<double> steps_;            // per unknown, of derivatives
+    std::vector<std::size_t> exposures_;   // the unknowns that are those of pictures; or none
+    std::optional<std::size_t> response_;  // the unknown that is it
+    double dark_ = 0;                      // what is seen without light
+    std::vector<double> shared_;           // the unknowns as they were prepared last
+    Prediction light_;                     // of the scene
+    std::vector<double> light_of_;         // for which unknowns; empty: none
     /// Where derivatives were taken; empty: nowhere. They are differences over a step to either
     /// side, and serve within it.
     std::vector<double> derivatives_at_;

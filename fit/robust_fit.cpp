@@ -164,9 +164,11 @@ void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
         if (error > 1) {
             FreeDirection direction;
             direction.error = error;
-            constexpr double k_counts = 0.2;
+            constexpr double k_counts = 0.2;  // of the most affected
+            double most = 0;
+            for (const double share : vector) most = std::max(most, std::abs(share));
             for (std::size_t i = 0; i < n; ++i)
-                if (std::abs(vector[i]) > k_counts) direction.unknowns.push_back(i);
+                if (std::abs(vector[i]) > k_counts * most) direction.unknowns.push_back(i);
             std::ranges::sort(direction.unknowns, std::greater{},
                               [&](std::size_t i) { return std::abs(vector[i]); });
             for (const std::size_t i : direction.unknowns) direction.shares.push_back(vector[i]);

@@ -112,7 +112,8 @@ Options fit_options(FitArguments& a) {
                 begin = end + 1;
             }
         },
-        "what to find: paths as of --set; * stands for every entry");
+        "what to find: paths as of --set; * stands for every entry; exposure and response of "
+        "pictures");
     unknown.repeatable = true;
     options
         .parsed(
@@ -185,6 +186,21 @@ std::vector<Prior> priors_of(const FitArguments& a, const SceneUnknowns& unknown
     return priors;
 }
 
+/// Lets unknown exposures begin where the pictures are as bright as the scene.
+void begin_exposures(SceneUnknowns& unknowns, PictureResiduals& pictures) {
+    std::vector<double> start;
+    bool has_exposures = false;
+    for (const SceneUnknown& unknown : unknowns.all()) {
+        start.push_back(unknown.start);
+        has_exposures = has_exposures || unknown.of == SceneUnknown::Of::exposure;
+    }
+    if (!has_exposures) return;
+    const std::vector<double> exposures = pictures.exposures_at(start);
+    for (std::size_t i = 0; i < unknowns.size(); ++i)
+        if (unknowns.all()[i].of == SceneUnknown::Of::exposure)
+            unknowns.begin_at(i, exposures[unknowns.all()[i].picture]);
+}
+
 /// The scene's text with what was found, and all else as it was.
 std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
                         const FitResult& result) {
@@ -224,32 +240,37 @@ void run_fit(const FitArguments& a) {
     if (!a.poses.empty() && (a.board || a.images.empty()))
         throw UsageError(
             "--poses: are those of --images without --board; of corners poses are found");
-    const SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns);
+    const auto warn = [](const std::string& line) {
+        print_message(fmt::format("warning: {}\n", line));
+    };
+    std::vector<ObservedPicture> seen_pictures;
+    std::vector<std::string> names;
+    if (!a.images.empty())
+        seen_pictures =
+            a.poses.empty() ? pictures_called(a.images) : posed_pictures(a.images, a.poses, warn);
+    if (!a.board)
+        for (const ObservedPicture& picture : seen_pictures)
+            names.push_back(picture.file.filename().string());
+    SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns, names);
     FitOptions options;
     options.priors = priors_of(a, unknowns);
     options.starts = a.starts;
     options.keeps_outliers = a.keeps_outliers;
     std::unique_ptr<Observations> observations;
     const PictureResiduals* pictures = nullptr;
-    const auto warn = [](const std::string& line) {
-        print_message(fmt::format("warning: {}\n", line));
-    };
     TextFiles files;
     if (!a.points.empty()) {
         observations = std::make_unique<PointResiduals>(
             unknowns, read_seen_points(read_csv_file(a.points, "--points")));
     } else if (a.board) {
         std::vector<std::filesystem::path> pictures_of_it;
-        for (const ObservedPicture& picture : pictures_called(a.images))
-            pictures_of_it.push_back(picture.file);
+        for (const ObservedPicture& picture : seen_pictures) pictures_of_it.push_back(picture.file);
         PointTable corners = find_board_corners(pictures_of_it, *a.board, warn);
         if (!a.corners.empty()) files.add(a.corners, point_csv(corners));
         observations = std::make_unique<PointResiduals>(unknowns, std::move(corners));
     } else {
-        auto seen = std::make_unique<PictureResiduals>(
-            unknowns,
-            a.poses.empty() ? pictures_called(a.images) : posed_pictures(a.images, a.poses, warn),
-            a.cells);
+        auto seen = std::make_unique<PictureResiduals>(unknowns, std::move(seen_pictures), a.cells);
+        begin_exposures(unknowns, *seen);
         pictures = seen.get();
         observations = std::move(seen);
     }

@@ -4,11 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "core/base/json.h"
+#include "core/image/colour.h"
+#include "core/image/image_file.h"
 #include "core/scene/trajectory.h"
 #include "render/scene_loading.h"
 #include "tests/support/fit_pictures.h"
@@ -50,6 +54,62 @@ TEST_F(FitPictures, GainAndBrightnessCannotBeToldApart) {
     EXPECT_NE(first.find("camera.sensor.gain"), std::string::npos) << first;
     EXPECT_NE(first.find("lamps.left.intensity[0]"), std::string::npos) << first;
     EXPECT_NE(first.find("cannot be told apart"), std::string::npos) << first;
+}
+
+// As a camera develops them: each picture with an exposure of its own, a curve that is not sRGB's,
+// 8 bits. The power of a cell's mean is not the mean of the powers, and rounding is what is off
+// besides.
+TEST_F(FitPictures, ExposuresAndResponseOfDevelopedPictures) {
+    take_pictures("");
+    constexpr double k_exposures[] = {0.5, 0.9, 0.35}, k_response = 0.85;
+    for (int frame = 0; frame < 3; ++frame) {
+        const PixelImage light = read_linear_image(folder_ / fmt::format("dive_{:02}.exr", frame));
+        Preview developed(light.width, light.height);
+        for (int y = 0; y < light.height; ++y)
+            for (int x = 0; x < light.width; ++x)
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const auto index =
+                        static_cast<std::size_t>((y * light.width + x) * light.channels) + k;
+                    const double exposed = k_exposures[frame] * double{light.pixels[index]};
+                    developed(x, y)[k] = static_cast<std::uint8_t>(std::lround(
+                        255 * srgb_encode(std::clamp(std::pow(exposed, k_response), 0.0, 1.0))));
+                }
+        write_png(folder_ / fmt::format("dive_{:02}.png", frame), developed, {});
+    }
+    const Json found = fit("dive_%02d.png", "water.absorption,exposure,response",
+                           {"water.absorption=[0.35, 0.15, 0.1]"});
+    EXPECT_TRUE(found.at("converged").get<bool>());
+    expect_found(found,
+                 {{"water.absorption[0]", 0.25},
+                  {"water.absorption[1]", 0.09},
+                  {"water.absorption[2]", 0.05},
+                  {"exposure[0] (dive_00.png)", 0.5},
+                  {"exposure[1] (dive_01.png)", 0.9},
+                  {"exposure[2] (dive_02.png)", 0.35},
+                  {"response", k_response}},
+                 4, 0.015);
+    for (const Json& unknown : found.at("unknowns"))
+        EXPECT_LT(unknown.at("error").get<double>(), 0.02) << unknown.dump();
+}
+
+// A lamp twice as bright is an exposure twice as long.
+TEST_F(FitPictures, ExposuresAndBrightnessCannotBeToldApart) {
+    take_pictures(k_raw_sensor);
+    const Json found = fit("dive_%02d.sensor.png", "exposure,lamps.*.intensity", {});
+    ASSERT_FALSE(found.at("doubts").empty());
+    const std::string first = found.at("doubts")[0].get<std::string>();
+    for (const char* const name :
+         {"exposure[0] (dive_00.sensor.png)", "exposure[2] (dive_02.sensor.png)",
+          "lamps.left.intensity[0]", "lamps.right.intensity[2]", "cannot be told apart"})
+        EXPECT_NE(first.find(name), std::string::npos) << first;
+    // With that of one picture known, all are.
+    const Json of_two = fit("dive_%02d.sensor.png", "exposure,lamps.*.intensity", {},
+                            {"--prior", "exposure[0]=1+-0.001"});
+    EXPECT_TRUE(of_two.at("doubts").empty() ||
+                of_two.at("doubts")[0].get<std::string>().find("told apart") == std::string::npos)
+        << of_two.at("doubts").dump();
+    expect_found(of_two, {{"exposure[1] (dive_01.sensor.png)", 1}, {"lamps.left.intensity[1]", 32}},
+                 4, 0);
 }
 
 /// A COLMAP model in the scene's axes, at half the scale: k_dive's keyframes, of which it has not
@@ -129,6 +189,9 @@ TEST_F(FitPictures, RefusesWhatIsNotThePictureOfTheScene) {
     EXPECT_NE(error({"--images", "dive_%02d.exr", "--set", "camera.resolution=[80, 60]"})
                   .find("is 160 x 120 pixels, and the scene's camera 80 x 60; set "
                         "camera.resolution and camera.intrinsics to the picture's"),
+              std::string::npos);
+    EXPECT_NE(error({"--points", "corners.csv", "--unknown", "exposure"})
+                  .find("--unknown exposure: is that of pictures"),
               std::string::npos);
     EXPECT_NE(error({"--images", "dive_%02d.exr", "--prior", "water.absorption=1"})
                   .find("give KEY=VALUE+-ERROR"),
