@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
@@ -21,8 +22,8 @@ constexpr double k_outlier = 5;
 /// Where Cauchy's loss has 95 % of the efficiency of squares for normal residuals.
 constexpr double k_cauchy = 2.385;
 
-/// Relative changes of the sum at which it has converged.
-constexpr double k_on_the_way = 1e-4, k_in_the_end = 1e-8;
+/// The relative change of the sum at which a round that is not the last has converged.
+constexpr double k_on_the_way = 1e-4;
 
 /// Residuals of all groups as a problem's unknowns have them, in the observations' unit; infinite
 /// where there are none.
@@ -99,7 +100,7 @@ class Rounds {
         double deviation = deviation_now();
         if (options_.keeps_outliers) {
             observations_.set_deviation(deviation > 0 ? deviation : 1);
-            return round("standard errors", k_infinity, k_in_the_end);
+            return round("standard errors", k_infinity, observations_.convergence());
         }
         constexpr int k_most_rounds = 8;
         for (int i = 0; i < k_most_rounds && deviation > 0; ++i) {
@@ -111,7 +112,7 @@ class Rounds {
         if (!(deviation > 0)) return outcome;
         leave_out_outliers(residuals_of(observations_, problem_), deviation, problem_.groups);
         observations_.set_deviation(deviation);
-        return round("standard errors", k_infinity, k_in_the_end);
+        return round("standard errors", k_infinity, observations_.convergence());
     }
 
     int iterations() const { return iterations_; }
@@ -120,7 +121,7 @@ class Rounds {
     LeastSquaresOutcome round(const char* stage, double loss_scale, double tolerance) {
         problem_.loss_scale = loss_scale;
         problem_.tolerance = tolerance;
-        problem_.most_iterations = tolerance < k_on_the_way ? 100 : 25;
+        problem_.most_iterations = std::string_view(stage) == "standard errors" ? 100 : 25;
         if (options_.progress)
             problem_.progress = [&, stage](int, double cost) { options_.progress(stage, cost); };
         LeastSquaresOutcome outcome = solve_least_squares(observations_, problem_);
@@ -163,9 +164,11 @@ void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
         if (error > 1) {
             FreeDirection direction;
             direction.error = error;
-            constexpr double k_counts = 0.2;
+            constexpr double k_counts = 0.2;  // of the most affected
+            double most = 0;
+            for (const double share : vector) most = std::max(most, std::abs(share));
             for (std::size_t i = 0; i < n; ++i)
-                if (std::abs(vector[i]) > k_counts) direction.unknowns.push_back(i);
+                if (std::abs(vector[i]) > k_counts * most) direction.unknowns.push_back(i);
             std::ranges::sort(direction.unknowns, std::greater{},
                               [&](std::size_t i) { return std::abs(vector[i]); });
             for (const std::size_t i : direction.unknowns) direction.shares.push_back(vector[i]);
@@ -283,8 +286,9 @@ FitResult robust_fit(Observations& observations, const SceneUnknowns& unknowns,
         result.values.push_back(std::move(found));
     }
     // The information is in units of the deviation that was assumed; priors are in their own.
+    result.clustering = observations.clustering(result.residuals, result.outliers);
     const double ratio = deviation / result.deviation;
-    for (double& entry : outcome.information) entry *= ratio * ratio;
+    for (double& entry : outcome.information) entry *= ratio * ratio / result.clustering;
     find_errors(outcome, result);
     return result;
 }
