@@ -274,6 +274,7 @@ struct Wanted {
     ImageChoice choice;
     RenderOptions options;
     std::vector<std::string> derivatives;
+    int seed = 0;  // of derivatives
 };
 
 [[noreturn]] void refuse_setting(const py::dict& settings, const char* key, const char* expected) {
@@ -309,6 +310,8 @@ Wanted wanted_of(const py::dict& settings) {
     take("frame", wanted.choice.frame, "a whole number");
     take("camera", wanted.choice.camera, number);
     take("derivatives", wanted.derivatives, "names of derivatives");
+    take("seed", wanted.seed, number);
+    if (wanted.seed < 0) refuse_setting(settings, "seed", number);
     if (wanted.image.samples && *wanted.image.samples < 1)
         refuse_setting(settings, "samples", "a whole number of 1 or more");
     if (wanted.image.size && std::ranges::min(*wanted.image.size) < 1)
@@ -364,7 +367,7 @@ class RendererObject : public RunClient {
         const PixelWindow window =
             wanted.options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
         std::vector<float> values = differentiate(itself, progress, [&](Renderer& renderer) {
-            return scene_derivatives(renderer, changed, wanted.options, told("derivatives"));
+            return scene_derivatives(renderer, changed, derived(wanted), told("derivatives"));
         });
         return owned(std::move(values),
                      {static_cast<py::ssize_t>(changes.size()), window.height(), window.width(),
@@ -382,7 +385,7 @@ class RendererObject : public RunClient {
         const std::span<const double> values(weights.data(),
                                              static_cast<std::size_t>(weights.size()));
         std::vector<float> found = differentiate(itself, progress, [&](Renderer& renderer) {
-            return uw::voxel_derivatives(renderer, volume, values, wanted.options,
+            return uw::voxel_derivatives(renderer, volume, values, derived(wanted),
                                          told("derivatives"));
         });
         std::vector<py::ssize_t> shape;
@@ -424,7 +427,7 @@ class RendererObject : public RunClient {
         const std::vector<std::string>& names = wanted_->derivatives;
         if (names.empty()) return {};
         const std::vector<float> all =
-            named_derivatives(engine_->renderer(), names, wanted_->options, told("derivatives"));
+            named_derivatives(engine_->renderer(), names, derived(*wanted_), told("derivatives"));
         const std::size_t each = all.size() / names.size();
         for (std::size_t i = 0; i < names.size(); ++i)
             image_->derivatives[names[i]].assign(&all[i * each], &all[i * each] + each);
@@ -438,6 +441,10 @@ class RendererObject : public RunClient {
     void tell(const std::string& stage, double fraction) override { task_.tell(stage, fraction); }
 
   private:
+    static DerivativeOptions derived(const Wanted& wanted) {
+        return {wanted.options.window, wanted.seed};
+    }
+
     static ImageScene image_of(const SceneObject& scene, const Wanted& wanted) {
         SceneDesc desc = *scene.desc();
         apply_request(wanted.image, desc);

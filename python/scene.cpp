@@ -200,8 +200,8 @@ std::shared_ptr<const LoadedGrid> grid_of(const FloatArray& array, const Affine&
     std::shared_ptr<const LoadedGrid> grid;
     WatchedTask task;
     run_interruptible(task, [&] {
-        grid = std::make_shared<const LoadedGrid>(
-            grid_of_array(view_of(array), place, name, where));
+        grid =
+            std::make_shared<const LoadedGrid>(grid_of_array(view_of(array), place, name, where));
     });
     return grid;
 }

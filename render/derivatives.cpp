@@ -93,10 +93,10 @@ struct KeptScene {
     std::optional<WaterSurface> water_surface;
 };
 
-/// What `by_paths(pixels, window, samples)` or `by_quadrature(pixels, water, window)` makes of the
+/// What `by_paths(pixels, window, draws)` or `by_quadrature(pixels, water, window)` makes of the
 /// renderer's scene, as its light requires.
 template <class ByPaths, class ByQuadrature>
-auto by_light(Renderer& renderer, const RenderOptions& options, const ByPaths& by_paths,
+auto by_light(Renderer& renderer, const DerivativeOptions& options, const ByPaths& by_paths,
               const ByQuadrature& by_quadrature) {
     const AssembledScene& scene = renderer.assemble();
     const CameraDesc& camera = scene.desc().camera;
@@ -105,7 +105,8 @@ auto by_light(Renderer& renderer, const RenderOptions& options, const ByPaths& b
     if (scene.desc().render.integrator == RenderDesc::Integrator::path ||
         layer_plan(scene.image, {}).is_provided(Layer::multiple)) {
         const LightTransport transport = make_path_transport(scene, scene.scattering);
-        return by_paths(pixel_renderer(scene, transport), window, samples_of(scene.desc().render));
+        return by_paths(pixel_renderer(scene, transport), window,
+                        Draws{samples_of(scene.desc().render), options.seed});
     }
     renderer.splat();
     const LightTransport transport = renderer.make_transport();
@@ -114,12 +115,13 @@ auto by_light(Renderer& renderer, const RenderOptions& options, const ByPaths& b
 }
 
 std::vector<float> derivative_images(Renderer& renderer, std::span<const SceneChange> changes,
-                                     const RenderOptions& options, const ShareCallback& progress) {
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress) {
     const ChangedScenes changed(renderer.assemble().lit(), changes);
     return by_light(
         renderer, options,
-        [&](const PixelRenderer& pixels, const PixelWindow& window, int samples) {
-            return path_derivatives(pixels, changed, window, samples, progress);
+        [&](const PixelRenderer& pixels, const PixelWindow& window, const Draws& draws) {
+            return path_derivatives(pixels, changed, window, draws, progress);
         },
         [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
             return quadrature_derivatives(pixels, water, changed, window, progress);
@@ -129,7 +131,8 @@ std::vector<float> derivative_images(Renderer& renderer, std::span<const SceneCh
 }  // namespace
 
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
-                                     const RenderOptions& options, const ShareCallback& progress) {
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress) {
     refuse_other_images(renderer.assemble(), changes.empty() ? "" : changes.front().name);
     const ImageScene itself = renderer.scene();
     std::vector<std::unique_ptr<const KeptScene>> kept;
@@ -227,7 +230,8 @@ Medium with_one_more(const std::string& name, const AssembledScene& scene) {
 }  // namespace
 
 std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::string> names,
-                                     const RenderOptions& options, const ShareCallback& progress) {
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress) {
     const AssembledScene& scene = renderer.assemble();
     refuse_other_images(scene, names.empty() ? "" : names.front());
     std::vector<Medium> media;
@@ -251,7 +255,8 @@ constexpr std::size_t k_most_gradients = 16;
 }  // namespace
 
 std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
-                                     std::span<const double> weights, const RenderOptions& options,
+                                     std::span<const double> weights,
+                                     const DerivativeOptions& options,
                                      const ShareCallback& progress) {
     const AssembledScene& scene = renderer.assemble();
     refuse_other_images(scene, fmt::format("volumes[{}].array", volume));
@@ -278,12 +283,14 @@ std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
     };
     by_light(
         renderer, options,
-        [&](const PixelRenderer& pixels, const PixelWindow& window, int samples) {
-            path_gradient(pixels, weights_of(window), samples, gradients, progress);
+        [&](const PixelRenderer& pixels, const PixelWindow& window, const Draws& draws) {
+            path_gradient(pixels, weights_of(window), draws, gradients, progress);
         },
         [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
-            const bool all = scene.desc().render.quality == RenderDesc::Quality::exact;
-            quadrature_gradient(pixels, water, weights_of(window), all, gradients, progress);
+            std::optional<Draws> draws;
+            if (scene.desc().render.quality != RenderDesc::Quality::exact)
+                draws = {.seed = options.seed};
+            quadrature_gradient(pixels, water, weights_of(window), draws, gradients, progress);
         });
     std::vector<float> sums(by_part.front()->values().size());
     for (std::size_t i = 0; i < sums.size(); ++i) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +17,12 @@ struct ChangedScene {
     double step = 0;  // by how much the number differs between the two
 };
 
+/// What of an image is differentiated, and how.
+struct DerivativeOptions {
+    std::optional<PixelWindow> window{};  ///< none: the whole image
+    int seed = 0;                         ///< of what is drawn at random, >= 0
+};
+
 /// The derivatives of the image of the scene that `renderer` has by these numbers, band by band:
 /// [change][pixel of options.window, row by row][band], as `total` has light, per unit of the
 /// number. Of numbers of the water, its particles and volumes, of the lamps, and of what surfaces
@@ -23,13 +30,14 @@ struct ChangedScene {
 ///
 /// Light scattered once is differentiated term by term at the nodes of the integrator volume; all
 /// light, and scenes of the integrator path, by random paths, as many per pixel as the image's
-/// samples or options say (core/passes/derivative_images.h): without bias, and with noise. What a
+/// samples (core/passes/derivative_images.h): without bias, and with noise. What a
 /// number moves in the image (the edge of a shadow, or of a beam that ends at once) is not in it.
 /// The renderer has the same scene afterwards. Throws UsageError for images whose light is not a
 /// sum over paths (forward scatter, snow, exposures with motion, bands with rays of their own, the
 /// paper's output) and for changes of anything else, saying why; and as Renderer.
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
-                                     const RenderOptions& options, const ShareCallback& progress);
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress);
 
 /// The derivatives of the image by each of
 ///
@@ -43,7 +51,8 @@ std::vector<float> scene_derivatives(Renderer& renderer, std::span<const Changed
 /// As scene_derivatives, which differ in that a key of the scene has to be written there; throws
 /// UsageError for other names.
 std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::string> names,
-                                     const RenderOptions& options, const ShareCallback& progress);
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress);
 
 /// The derivatives of a number by the values of a grid that is in memory (VolumeDesc::array), from
 /// its derivatives by the light of the pixels of options.window, row by row, `weights`
@@ -51,7 +60,8 @@ std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::st
 /// scene_derivatives; where nothing scatters, it is as if nothing were added that does. Throws
 /// UsageError if volume `volume` is none in memory.
 std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
-                                     std::span<const double> weights, const RenderOptions& options,
+                                     std::span<const double> weights,
+                                     const DerivativeOptions& options,
                                      const ShareCallback& progress);
 
 }  // namespace uw

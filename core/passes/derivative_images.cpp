@@ -79,6 +79,10 @@ std::vector<float> images_of(const ChangedScenes& scenes, const PixelWindow& win
     return images;
 }
 
+PathRound round_of(const Draws& draws) {
+    return {draws.seed, draws.samples};
+}
+
 }  // namespace
 
 std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
@@ -96,15 +100,15 @@ std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
 }
 
 std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedScenes& scenes,
-                                    const PixelWindow& window, int samples,
+                                    const PixelWindow& window, const Draws& draws,
                                     const ShareCallback& progress) {
     PathPixels paths(pixels, 0);
-    paths.share_out(samples);
+    paths.share_out(draws.samples);
     return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
         thread_local PixelResult result;
         paths.render(
-            x, y, {.number = 0, .samples = samples}, [](int) {}, result, &sum);
-        return result.pixel_factor / samples;
+            x, y, round_of(draws), [](int) {}, result, &sum);
+        return result.pixel_factor / draws.samples;
     });
 }
 
@@ -116,13 +120,15 @@ class WorthOfTerms final : public PathTerms {
     WorthOfTerms(const GradientTables& tables, FieldGradient& gradient, std::size_t bands)
         : gradient_(tables, gradient), factors_(bands), worth_(bands) {}
 
-    /// Of the many terms on a ray, a few stand for all from now on, without bias: drawn evenly
+    /// Of the many terms on a ray of this pixel, a few stand for all, without bias: drawn evenly
     /// along the sum of what they are worth.
-    void thin() { is_thinned_ = true; }
+    void thin(int x, int y, int seed) {
+        const auto pixel = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
+        random_.emplace(PathRandom::seed_of(pixel, static_cast<std::uint64_t>(seed), 0), 0);
+    }
     /// The number's derivative by the light of the terms that follow, those of a pixel.
-    void begin(std::span<const double> weights, double factor, std::uint64_t pixel) {
+    void begin(std::span<const double> weights, double factor) {
         for (std::size_t b = 0; b < factors_.size(); ++b) factors_[b] = factor * weights[b];
-        random_ = PathRandom(PathRandom::seed_of(pixel, 0, 0), 0);
     }
     void finish() {
         take_kept();
@@ -138,7 +144,7 @@ class WorthOfTerms final : public PathTerms {
             worth_[b] = factors_[b] * term.radiance[b];
             size += std::abs(worth_[b]);
         }
-        if (!is_thinned_) {
+        if (!random_) {
             gradient_.add(term, worth_);
             return;
         }
@@ -156,7 +162,7 @@ class WorthOfTerms final : public PathTerms {
     void take_kept() {
         constexpr double k_of_ray = 8;
         const double step = total_ / k_of_ray;
-        double next = kept_.empty() ? 0 : random_.next() * step, before = 0;
+        double next = kept_.empty() ? 0 : random_->next() * step, before = 0;
         for (Kept& kept : kept_) {
             before += kept.size;
             int times = 0;
@@ -171,15 +177,10 @@ class WorthOfTerms final : public PathTerms {
 
     PathGradient gradient_;
     std::vector<double> factors_, worth_;
-    bool is_thinned_ = false;
+    std::optional<PathRandom> random_;  // none: all terms are taken
     std::vector<Kept> kept_;
     double total_ = 0;
-    PathRandom random_{0, 0};
 };
-
-std::uint64_t number_of(int x, int y) {
-    return (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
-}
 
 /// Calls `render(x, y, terms)` for each pixel, row by row, in as many parts as there are gradients.
 template <class Render>
@@ -201,31 +202,31 @@ void gather(const LitScene& scene, const PixelWeights& weights, FieldGradients g
 }  // namespace
 
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
-                         const PixelWeights& weights, bool all_nodes, FieldGradients gradients,
-                         const ShareCallback& progress) {
+                         const PixelWeights& weights, const std::optional<Draws>& draws,
+                         FieldGradients gradients, const ShareCallback& progress) {
     gather(pixels.scene(), weights, gradients, progress, [&](int x, int y, WorthOfTerms& terms) {
         thread_local PixelView view;
         thread_local SurfaceLight light;
         pixels.trace(x, y, view);
         pixels.light_surfaces(std::span(&view, 1), light);
-        if (!all_nodes) terms.thin();
-        terms.begin(weights.at(x, y), pixels.pixel_factor(view), number_of(x, y));
+        if (draws) terms.thin(x, y, draws->seed);
+        terms.begin(weights.at(x, y), pixels.pixel_factor(view));
         add_quadrature_terms(pixels, water, view, light, terms);
         terms.finish();
     });
 }
 
-void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, int samples,
+void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, const Draws& draws,
                    FieldGradients gradients, const ShareCallback& progress) {
     PathPixels paths(pixels, 0);
-    paths.share_out(samples);
+    paths.share_out(draws.samples);
     gather(pixels.scene(), weights, gradients, progress, [&](int x, int y, WorthOfTerms& terms) {
         thread_local PixelResult result;
         thread_local PixelView view;
         pixels.trace(x, y, view);
-        terms.begin(weights.at(x, y), pixels.pixel_factor(view) / samples, number_of(x, y));
+        terms.begin(weights.at(x, y), pixels.pixel_factor(view) / draws.samples);
         paths.render(
-            x, y, {.number = 0, .samples = samples}, [](int) {}, result, &terms);
+            x, y, round_of(draws), [](int) {}, result, &terms);
         terms.finish();
     });
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,10 +27,15 @@ std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
                                           const ChangedScenes& scenes, const PixelWindow& window,
                                           const ShareCallback& progress);
 
-/// Of all light: means over `samples` random paths per pixel, without bias. `pixels`: with paths in
-/// their light transport.
+/// What is drawn at random: how many light paths per pixel, and which of all that could be.
+struct Draws {
+    int samples = 1, seed = 0;  ///< >= 1, >= 0
+};
+
+/// Of all light: means over random paths, without bias. `pixels`: with paths in their light
+/// transport.
 std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedScenes& scenes,
-                                    const PixelWindow& window, int samples,
+                                    const PixelWindow& window, const Draws& draws,
                                     const ShareCallback& progress);
 
 /// An image of weights, [pixel of the window][band]: the derivative of some number by the light of
@@ -51,14 +57,14 @@ struct PixelWeights {
 /// each part of the image, that is rendered in one thread.
 using FieldGradients = std::span<const std::unique_ptr<FieldGradient>>;
 
-/// Gathers them, from `all_nodes` of each ray, or from a few that are drawn and stand for all
-/// without bias: tracing what lies between a node and its lamp is what takes the time. Otherwise as
-/// quadrature_derivatives.
+/// Gathers them, from all nodes of each ray, or, if there are `draws`, from a few that stand for
+/// all without bias: tracing what lies between a node and its lamp is what takes the time.
+/// Otherwise as quadrature_derivatives.
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
-                         const PixelWeights& weights, bool all_nodes, FieldGradients gradients,
-                         const ShareCallback& progress);
+                         const PixelWeights& weights, const std::optional<Draws>& draws,
+                         FieldGradients gradients, const ShareCallback& progress);
 /// As path_derivatives.
-void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, int samples,
+void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, const Draws& draws,
                    FieldGradients gradients, const ShareCallback& progress);
 
 }  // namespace uw

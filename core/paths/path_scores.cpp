@@ -170,7 +170,8 @@ void PathScores::add_way(const Point3& from, const Point3& to, std::span<double>
             const std::vector<double>& columns = side.has_same_field ? base_column_ : column_;
             const double factor = -sign / scenes_.steps_[i];
             for (std::size_t b = 0; b < bands; ++b)
-                scores[i * bands + b] += factor * side.attenuation.optical_depth(b, length, columns);
+                scores[i * bands + b] +=
+                    factor * side.attenuation.optical_depth(b, length, columns);
         };
         depths(scenes_.more(i), 1);
         depths(scenes_.less(i), -1);
@@ -235,11 +236,10 @@ double PathScores::shine(const Side& side, const Corner& corner, std::size_t emi
     const double aside =
         corner.kind == PathTurn::Kind::scattered ? lamp.aside({corner.position, corner.in}) : 0;
     const double radius = std::sqrt(length * length + aside);
-    const double light = lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) /
-                         lamp.spread(radius);
+    const double light =
+        lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) / lamp.spread(radius);
     respond(side, corner, to_lamp / length, values);
-    for (std::size_t b = 0; b < scenes_.bands(); ++b)
-        values[b] *= light * lamp.axis_intensity()[b];
+    for (std::size_t b = 0; b < scenes_.bands(); ++b) values[b] *= light * lamp.axis_intensity()[b];
     return radius;
 }
 

@@ -104,8 +104,8 @@ class PathScores {
     double shine(const Side& side, const Corner& corner, std::size_t emitter, Spectrum& values);
     // Adds what the optical depth of light makes that comes from an emitter, after these distances;
     // of a term with columns, of all its way.
-    void add_depth(const PathTerm& term, std::size_t change, double radius_less,
-                   double radius_more, std::span<double> scores);
+    void add_depth(const PathTerm& term, std::size_t change, double radius_less, double radius_more,
+                   std::span<double> scores);
     Spectrum emission(const Side& side, const Corner& corner) const;
     void find_column(const Side& side, const Point3& from, const Point3& to,
                      std::vector<double>& column) const;

@@ -84,7 +84,7 @@ def main():
     parser.add_argument("--size", type=size_of, default=(64, 48), help="of the pictures")
     parser.add_argument("--voxels", type=int, default=24, help="along an edge")
     parser.add_argument("--steps", type=int, default=120)
-    parser.add_argument("--smoothness", type=float, default=3e-5, help="of total variation")
+    parser.add_argument("--smoothness", type=float, default=1e-7, help="of total variation")
     parser.add_argument("--figure", help="file for slices of both")
     arguments = parser.parse_args()
 
@@ -109,7 +109,8 @@ def main():
             off = (image["total"] - seen[view]) / brightness
             loss += (off**2).mean() / VIEWS
             slope = 2 * off / (off.size * VIEWS * brightness)
-            gradient += image.backward(slope, "volumes[0].array")["volumes[0].array"]
+            found = image.backward(slope, "volumes[0].array", seed=step)
+            gradient += found["volumes[0].array"]
         variation, of_variation = total_variation(density)
         gradient += arguments.smoothness * of_variation
         # Adam (Kingma and Ba 2015), with steps that shrink towards the end.

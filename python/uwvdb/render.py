@@ -144,7 +144,7 @@ class Renderer:
         return LightMatrix([name.removeprefix("lamp.") for name in names], images,
                            image["total"] - images.sum(axis=0, dtype=np.float32))
 
-    def jvp(self, scene: Scene, directions: Mapping[str, ArrayLike], *,
+    def jvp(self, scene: Scene, directions: Mapping[str, ArrayLike], *, seed: int = 0,
             progress: Progress | None = None, **settings: Any) -> NDArray[np.float32]:
         """The derivative of "total" (height, width, bands) as the numbers at some paths of the
         scene move along `directions` (a Jacobian times a vector): {"lamps[0].position": [1, 0, 0]}
@@ -154,26 +154,28 @@ class Renderer:
         what surfaces reflect. `settings`: as for render(). Where the image is of light scattered
         once, it is exact: the image's own sums, differentiated term by term. With
         render.scattering multiple, and by integrator "path", it is the mean over `samples` random
-        paths per pixel, without bias and with noise. Not in it is what a number moves in the image:
+        paths per pixel, without bias and with noise: other ones for another `seed`. Not in it is what a number moves in the image:
         the edges of shadows, and of beams that end at once.
 
         Raises UsageError for what has no such derivatives, and as render().
         """
-        options = _settings("jvp", scene, settings)
+        options = _settings("jvp", scene, {**settings, "seed": seed})
         images = self._renderer.derivatives(scene._native, [_changes.change(scene, directions)],
                                             options, progress)
         return images[0]
 
     def backward(self, scene: Scene, gradient: ArrayLike, of: str | Sequence[str], *,
-                 progress: Progress | None = None,
+                 seed: int = 0, progress: Progress | None = None,
                  **settings: Any) -> dict[str, NDArray[np.float64]]:
         """The derivatives of a number by those at the paths `of` (a vector times a Jacobian), each
         of the shape that the scene has there; `gradient` (height, width, bands) is the number's
         derivative by "total": 2 (total - seen) where it is the sum of squares of what an image is
         off. "volumes[0].array" stands for all values of an array that was added to the volumes.
 
-        Like jvp() otherwise. Numbers take a pass over the image together, and each array one."""
-        options = _settings("backward", scene, settings)
+        Like jvp() otherwise. Numbers take a pass over the image together, and each array one. Unless
+        the quality is "exact", a few places on each ray stand for all in those of arrays: descend
+        with another `seed` in each step."""
+        options = _settings("backward", scene, {**settings, "seed": seed})
         paths = [of] if isinstance(of, str) else list(of)
         weights = _changes.checked_gradient(gradient, scene, settings)
         result: dict[str, NDArray[np.float64]] = {}

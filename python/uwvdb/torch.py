@@ -21,7 +21,8 @@ class _Render(torch.autograd.Function):
     def forward(ctx: Any, renderer: Renderer, scene: Scene, paths: list[str],
                 settings: dict[str, Any], *values: torch.Tensor) -> torch.Tensor:
         changed = with_values(scene, dict(zip(paths, values)))
-        ctx.rendered = renderer, changed, paths, settings
+        ctx.rendered = renderer, changed, paths, dict(settings)
+        settings = {key: value for key, value in settings.items() if key != "seed"}
         ctx.kinds = [(value.dtype, value.device) for value in values]
         image = renderer.render(changed, ["total"], **settings)["total"]
         return torch.as_tensor(np.array(image), dtype=values[0].dtype, device=values[0].device)
@@ -61,8 +62,8 @@ def render(renderer: Renderer, scene: Scene, values: Mapping[str, torch.Tensor],
         image = uwvdb.torch.render(renderer, scene, {"water.scattering.b": b})
         ((image - seen) ** 2).mean().backward()
 
-    `settings`: as for Renderer.render(). By light paths, an image and its gradient share their
-    random numbers; an unbiased gradient of a square takes the two from different ones. Raises
+    `settings`: as for Renderer.render(), and the `seed` of its gradient. By light paths, both share
+    their random numbers with seed 0: take others for an unbiased gradient of a square. Raises
     UsageError, and as Renderer.render().
     """
     if not values:
