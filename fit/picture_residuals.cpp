@@ -38,15 +38,16 @@ double model_error(const SceneDesc& scene) {
 /// By how much unknowns are moved for derivatives, to either side. Light is interpolated, so that
 /// smaller steps would measure the tables; of larger ones central differences are off by the
 /// square. Of all light smaller steps would measure that the random paths are not quite the same
-/// ones on both sides.
+/// ones on both sides: noise in derivatives is taken for what they tell of unknowns that others
+/// make up for, absorption and scattering, which then move too little.
 double step_of(const SceneUnknown& unknown, bool has_all_light) {
     if (!has_all_light) return 1e-2 * unknown.scale;
-    return 1e-1 * std::max(std::abs(unknown.start), 0.25 * unknown.scale);
+    return 0.3 * std::max(std::abs(unknown.start), 0.25 * unknown.scale);
 }
 
-/// Pixels of a coarse image for all light, which has a node at each; with more of them, nodes are
-/// no denser (docs/multiple.md).
-constexpr double k_node_count = 4800;
+/// The least pixels of an image of all light, which has a node at each: with fewer, what lies
+/// between nodes is smoothed away (docs/multiple.md).
+constexpr double k_least_nodes = 2300;
 
 void refuse_developed(const SensorDesc& sensor) {
     if (sensor.image.is_raw) return;
@@ -201,8 +202,8 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     height_ = std::max(1, static_cast<int>(std::lround(scene.camera.height / cell_side_)));
     if (has_all_light_)
         pixels_per_side_ =
-            std::clamp(static_cast<int>(std::ceil(std::sqrt(k_node_count / (width_ * height_)))), 1,
-                       std::max(1, static_cast<int>(cell_side_)));
+            std::clamp(static_cast<int>(std::ceil(std::sqrt(k_least_nodes / (width_ * height_)))),
+                       1, std::max(1, static_cast<int>(cell_side_)));
     for (std::size_t i = 0; i < files_.size(); ++i) {
         names_.push_back(files_[i].file.filename().string());
         renderers_.emplace_back();
@@ -365,7 +366,7 @@ std::vector<double> PictureResiduals::exposures_at(std::span<const double> share
 void PictureResiduals::group_unknowns(std::span<const double> shared) {
     moved_.resize(shared.size());
     std::vector<std::array<bool, 3>> taken;  // per group
-    // Where light is scattered once, what does not depend on an unknown stays the same to the bit.
+    // Where light is scattered once, it has no noise.
     const Prediction before = predict(shared, Light::scattered_once);
     for (std::size_t i = 0; i < shared.size(); ++i) {
         std::vector<double> values(shared.begin(), shared.end());
@@ -375,13 +376,17 @@ void PictureResiduals::group_unknowns(std::span<const double> shared) {
         values[i] = values[i] + step <= unknown.upper ? values[i] + step : values[i] - step;
         const Prediction after = predict(values, Light::scattered_once);
         std::array<bool, 3>& colours = moved_[i].colours;
+        std::array<double, 3> changes{};
+        for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+            for (std::size_t k = 0; k < colours_; ++k)
+                changes[k] +=
+                    std::pow((after[cell][k] - before[cell][k]) / cells_[cell].error[k], 2);
+        // Where quadrature refines for one band, others change by its tolerance. If nothing changes
+        // at all, what is scattered again may.
+        constexpr double k_independent = 1e-2;
+        const double most = *std::ranges::max_element(changes);
         for (std::size_t k = 0; k < colours.size(); ++k)
-            colours[k] = !std::ranges::equal(
-                before, after, {}, [&](const Colours& a) { return a[k]; },
-                [&](const Colours& a) { return a[k]; });
-        // Only what is scattered again may depend on it.
-        if (std::ranges::none_of(colours, [](bool depends) { return depends; }))
-            colours = {true, true, true};
+            colours[k] = most == 0 || changes[k] > k_independent * k_independent * most;
         const auto overlaps = [&](const std::array<bool, 3>& other) {
             for (std::size_t k = 0; k < other.size(); ++k)
                 if (other[k] && colours[k]) return true;
@@ -411,8 +416,8 @@ void PictureResiduals::take_derivatives(std::span<const double> shared) {
             ahead[i] = std::min(shared[i] + steps_[i], unknown.upper);
             moved_[i].step = ahead[i] - back[i];
         }
-        group.back = predict(back, Light::coarsely);
-        group.ahead = predict(ahead, Light::coarsely);
+        group.back = predict(back, Light::of_the_scene);
+        group.ahead = predict(ahead, Light::of_the_scene);
     }
     derivatives_at_.assign(shared.begin(), shared.end());
 }
@@ -437,7 +442,8 @@ bool PictureResiduals::prepare(std::span<const double> shared, bool with_derivat
             light_ = predict(shared, Light::of_the_scene);
             light_of_ = shared_;
         }
-        if (with_derivatives && !is_near(shared, derivatives_at_, 1)) take_derivatives(shared);
+        if (with_derivatives && !is_near(shared, derivatives_at_, has_all_light_ ? 0.1 : 1))
+            take_derivatives(shared);
         return true;
     } catch (const InputError&) {
         light_of_.clear();
@@ -479,10 +485,6 @@ std::vector<ResidualGroup> PictureResiduals::groups() const {
 Observations::Place PictureResiduals::place(std::size_t group) const {
     const Cell& cell = cells_[group];
     return {cell.picture, {(cell.x + 0.5) * cell_side_, (cell.y + 0.5) * cell_side_}};
-}
-
-double PictureResiduals::convergence() const {
-    return has_all_light_ ? 1e-4 : Observations::convergence();
 }
 
 double PictureResiduals::clustering(std::span<const double> residuals,

@@ -62,7 +62,7 @@ class PictureResiduals final : public Observations {
     const char* noun() const override { return "cell"; }
     const char* unit() const override { return "times the scatter"; }
     double of_group(double rms) const override { return rms; }
-    double convergence() const override;
+    bool is_rough() const override { return has_all_light_; }
     /// Of the means over blocks of cells, five across a picture: what cells share, such as the
     /// errors of light that is interpolated between nodes.
     double clustering(std::span<const double> residuals,

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "core/base/error.h"
@@ -22,8 +21,9 @@ constexpr double k_outlier = 5;
 /// Where Cauchy's loss has 95 % of the efficiency of squares for normal residuals.
 constexpr double k_cauchy = 2.385;
 
-/// The relative change of the sum at which a round that is not the last has converged.
-constexpr double k_on_the_way = 1e-4;
+/// Relative changes of the sum at which it has converged; where it is rough, the first at all
+/// times.
+constexpr double k_on_the_way = 1e-4, k_in_the_end = 1e-8;
 
 /// Residuals of all groups as a problem's unknowns have them, in the observations' unit; infinite
 /// where there are none.
@@ -100,7 +100,7 @@ class Rounds {
         double deviation = deviation_now();
         if (options_.keeps_outliers) {
             observations_.set_deviation(deviation > 0 ? deviation : 1);
-            return round("standard errors", k_infinity, observations_.convergence());
+            return round("standard errors", k_infinity, k_in_the_end);
         }
         constexpr int k_most_rounds = 8;
         for (int i = 0; i < k_most_rounds && deviation > 0; ++i) {
@@ -112,7 +112,7 @@ class Rounds {
         if (!(deviation > 0)) return outcome;
         leave_out_outliers(residuals_of(observations_, problem_), deviation, problem_.groups);
         observations_.set_deviation(deviation);
-        return round("standard errors", k_infinity, observations_.convergence());
+        return round("standard errors", k_infinity, k_in_the_end);
     }
 
     int iterations() const { return iterations_; }
@@ -120,8 +120,9 @@ class Rounds {
   private:
     LeastSquaresOutcome round(const char* stage, double loss_scale, double tolerance) {
         problem_.loss_scale = loss_scale;
-        problem_.tolerance = tolerance;
-        problem_.most_iterations = std::string_view(stage) == "standard errors" ? 100 : 25;
+        problem_.is_rough = observations_.is_rough();
+        problem_.tolerance = problem_.is_rough ? k_on_the_way : tolerance;
+        problem_.most_iterations = tolerance < k_on_the_way ? 100 : 25;
         if (options_.progress)
             problem_.progress = [&, stage](int, double cost) { options_.progress(stage, cost); };
         LeastSquaresOutcome outcome = solve_least_squares(observations_, problem_);

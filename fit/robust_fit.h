@@ -34,8 +34,8 @@ class Observations : public ResidualFunction {
     virtual const char* unit() const = 0;
     virtual double of_group(double rms) const = 0;
 
-    /// The relative change of the sum of squares at which the fit has converged in the end.
-    virtual double convergence() const { return 1e-8; }
+    /// Whether predictions have noise of their own, which changes with the unknowns.
+    virtual bool is_rough() const { return false; }
     /// By how much neighbouring residuals that hang together enlarge the variance of what is found,
     /// at least 1: independent ones do not. `residuals` of all groups, `outliers` per group.
     virtual double clustering(std::span<const double> /*residuals*/,
