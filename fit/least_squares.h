@@ -61,6 +61,7 @@ struct LeastSquaresProblem {
     double loss_scale = std::numeric_limits<double>::infinity();
     int most_iterations = 100;
     double tolerance = 1e-10;  // of the sum's relative change: then it has converged
+    bool is_rough = false;     // the sum may rise for a few steps: it has noise
     int threads = 1;
     std::function<void(int iteration, double cost)> progress{};  // may throw
 };

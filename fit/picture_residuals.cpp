@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "camera/camera.h"
@@ -15,21 +16,45 @@
 #include "core/geometry/mesh.h"
 #include "core/image/camera_sensor.h"
 #include "core/image/image_file.h"
+#include "core/light/integrator_table.h"
+#include "core/scene/pose_file.h"
 #include "render/scene_loading.h"
 
 namespace uw {
 
 namespace {
 
+bool has_all_light(const SceneDesc& scene) {
+    return scattering_of(scene.render) == RenderDesc::Scattering::multiple;
+}
+
 /// What a prediction may be off by for reasons of its own: shadows and tables are exact to about
-/// that at a scene's usual quality.
-constexpr double k_model_error = 1e-3;
+/// 1e-3 at a scene's usual quality, and light that is scattered more than once, which is found by
+/// random paths, to 1e-2.
+double model_error(const SceneDesc& scene) {
+    return has_all_light(scene) ? 1e-2 : 1e-3;
+}
+
+/// By how much unknowns are moved for derivatives, to either side. Light is interpolated, so that
+/// smaller steps would measure the tables; of larger ones central differences are off by the
+/// square. Of all light smaller steps would measure that the random paths are not quite the same
+/// ones on both sides: noise in derivatives is taken for what they tell of unknowns that others
+/// make up for, absorption and scattering, which then move too little.
+double step_of(const SceneUnknown& unknown, bool has_all_light) {
+    if (!has_all_light) return 1e-2 * unknown.scale;
+    return 0.3 * std::max(std::abs(unknown.start), 0.25 * unknown.scale);
+}
+
+/// The least pixels of an image of all light, which has a node at each: with fewer, what lies
+/// between nodes is smoothed away (docs/multiple.md).
+constexpr double k_least_nodes = 2300;
 
 void refuse_developed(const SensorDesc& sensor) {
     if (sensor.image.is_raw) return;
     throw InputError(fmt::format(
         "{}: its images are developed, and raw numbers are compared; take camera.sensor.image "
-        "out and give raw pictures, or take camera.sensor out and give pictures of light",
+        "out and give raw pictures, or take camera.sensor out and let --unknown exposure,response "
+        "stand for what developed them",
         sensor.where));
 }
 
@@ -100,6 +125,11 @@ class MeanNumbers {
         if (sensor_.full_well) electrons = std::min(electrons, *sensor_.full_well);
         return sensor_.system_gain() * electrons + sensor_.black_level;
     }
+    /// What they are without light.
+    double dark() const {
+        return sensor_.system_gain() * sensor_.dark_current * sensor_.exposure.value() +
+               sensor_.black_level;
+    }
     double factor(const LensRay& ray, double focus_vergence) const {
         return electrons_.irradiance_factor(ray, focus_vergence);
     }
@@ -108,6 +138,17 @@ class MeanNumbers {
     Photoelectrons electrons_;
     SensorDesc sensor_;
 };
+
+/// The image of a scene that a picture shows.
+ImageScene scene_of_picture(const SceneDesc& scene, const ObservedPicture& picture) {
+    if (!picture.world_from_camera) return scene_of_image(scene, picture.choice);
+    SceneDesc posed = scene;
+    const TrajectoryDesc place =
+        posed.camera.trajectory ? *posed.camera.trajectory : TrajectoryDesc();
+    posed.camera.world_from_camera = placed(*picture.world_from_camera, place).affine();
+    posed.camera.trajectory.reset();
+    return {std::move(posed), picture.choice};
+}
 
 PixelImage read_picture(const std::filesystem::path& file) {
     const std::string ending = file.extension().string();
@@ -134,13 +175,35 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     std::vector<double> start;
     for (const SceneUnknown& unknown : unknowns_.all()) start.push_back(unknown.start);
     const SceneDesc scene = unknowns_.scene(start);
+    if (scene.rig_trajectory && !files_.empty() && files_.front().world_from_camera)
+        throw InputError(
+            fmt::format("{}: moves the rig, and --poses the camera in it; take one of them out",
+                        scene.rig_trajectory->where));
+    for (std::size_t i = 0; i < unknowns_.size(); ++i) {
+        const SceneUnknown& unknown = unknowns_.all()[i];
+        if (unknown.of == SceneUnknown::Of::exposure) exposures_.push_back(i);
+        if (unknown.of == SceneUnknown::Of::response) response_ = i;
+    }
     if (scene.camera.sensor) {
         refuse_developed(*scene.camera.sensor);
         colours_ = colour_count(scene.camera.sensor->mosaic);
+        dark_ = MeanNumbers(scene).dark();
+        if (response_)
+            throw UsageError(
+                "--unknown response: a sensor's raw numbers are in proportion to light; leave it "
+                "out");
     }
+    has_all_light_ = has_all_light(scene);
+    model_error_ = model_error(scene);
+    for (const SceneUnknown& unknown : unknowns_.all())
+        steps_.push_back(step_of(unknown, has_all_light_));
     width_ = std::min(cells, scene.camera.width);
     cell_side_ = static_cast<double>(scene.camera.width) / width_;
     height_ = std::max(1, static_cast<int>(std::lround(scene.camera.height / cell_side_)));
+    if (has_all_light_)
+        pixels_per_side_ =
+            std::clamp(static_cast<int>(std::ceil(std::sqrt(k_least_nodes / (width_ * height_)))),
+                       1, std::max(1, static_cast<int>(cell_side_)));
     for (std::size_t i = 0; i < files_.size(); ++i) {
         names_.push_back(files_[i].file.filename().string());
         renderers_.emplace_back();
@@ -205,7 +268,7 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
             constexpr double k_like_noise = 4;
             const std::optional<double> noise = values.variance(cell.mean[k]);
             if (noise && variance < k_like_noise * *noise) variance = *noise;
-            cell.error[k] = std::sqrt(variance / count + std::pow(k_model_error * cell.mean[k], 2));
+            cell.error[k] = std::sqrt(variance / count + std::pow(model_error_ * cell.mean[k], 2));
         }
         found[index] = cell;
     });
@@ -215,22 +278,27 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
     for (std::optional<Cell>& cell : found) {
         if (!cell || !(brightest > 0)) continue;
         // Where all is dark, nothing is known to better than what the bright parts are known to.
-        for (double& error : cell->error)
-            error = std::hypot(error, 0.1 * k_model_error * brightest);
+        for (double& error : cell->error) error = std::hypot(error, 0.1 * model_error_ * brightest);
         cells_.push_back(*cell);
     }
 }
 
-PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> values) {
-    const SceneDesc scene = unknowns_.scene(values);
+PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> values,
+                                                       Light light) {
+    SceneDesc scene = unknowns_.scene(values);
+    const int side = light == Light::of_the_scene ? pixels_per_side_ : 1;
+    if (light == Light::scattered_once && has_all_light_) {
+        scene.render.integrator = RenderDesc::Integrator::volume;
+        scene.render.scattering = RenderDesc::Scattering::single;
+    }
     Prediction prediction(cells_.size());
     std::size_t next = 0;
     for (std::size_t picture = 0; picture < files_.size(); ++picture) {
         throw_if_stopped();
-        const ImageScene whole = scene_of_image(scene, files_[picture].choice);
+        const ImageScene whole = scene_of_picture(scene, files_[picture]);
         Renderer& renderer = renderers_[picture];
-        renderer.set_scene(
-            whole.with([&](SceneDesc& desc) { resize_image(desc.camera, width_, height_); }));
+        renderer.set_scene(whole.with(
+            [&](SceneDesc& desc) { resize_image(desc.camera, side * width_, side * height_); }));
         RenderOptions options;
         options.layers = "total";
         const Film& film = renderer.render(options);
@@ -238,13 +306,12 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
         std::optional<MeanNumbers> numbers;
         if (whole.desc().camera.sensor) numbers.emplace(whole.desc());
         const Camera camera(renderer.scene().desc().camera);
-        for (; next < cells_.size() && cells_[next].picture == picture; ++next) {
-            const Cell& cell = cells_[next];
-            const std::span<const float> pixel = film.pixel(cell.x, cell.y);
-            Colours& colours = prediction[next];
+        const auto colours_of = [&](int x, int y) {
+            const std::span<const float> pixel = film.pixel(x, y);
+            Colours colours{};
             if (numbers) {
-                const double factor = numbers->factor(camera.lens_ray(cell.x + 0.5, cell.y + 0.5),
-                                                      camera.focus_vergence());
+                const double factor =
+                    numbers->factor(camera.lens_ray(x + 0.5, y + 0.5), camera.focus_vergence());
                 // Three bands are red, green and blue themselves.
                 const std::size_t first =
                     plan.has(Layer::total)
@@ -259,88 +326,127 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
             } else {
                 for (std::size_t k = 0; k < colours_; ++k) colours[k] = double{pixel[k]};
             }
-        }
+            return colours;
+        };
+        for (; next < cells_.size() && cells_[next].picture == picture; ++next)
+            for (int i = 0; i < side * side; ++i) {
+                const Colours colours =
+                    colours_of(side * cells_[next].x + i % side, side * cells_[next].y + i / side);
+                for (std::size_t k = 0; k < colours_; ++k)
+                    prediction[next][k] += colours[k] / (side * side);
+            }
     }
     return prediction;
 }
 
-void PictureResiduals::move_groups(std::span<const double> shared) {
-    if (moved_.empty()) {
-        moved_.resize(shared.size());
-        together_.resize(shared.size());
-        for (std::size_t i = 0; i < shared.size(); ++i) {
-            moved_[i].group = i;
-            together_[i].unknowns = {i};
+PictureResiduals::Seen PictureResiduals::seen(std::size_t cell, double light) const {
+    const double exposure = exposures_.empty() ? 1 : shared_[exposures_[cells_[cell].picture]];
+    const double power = response_ ? shared_[*response_] : 1;
+    const double exposed = exposure * (light - dark_);
+    if (!(exposed > 0)) return {dark_, 0, 0, 0};
+    const double value = power == 1 ? exposed : std::pow(exposed, power);
+    return {dark_ + value, power * value / (light - dark_), power * value / exposure,
+            value * std::log(exposed)};
+}
+
+std::vector<double> PictureResiduals::exposures_at(std::span<const double> shared) {
+    std::vector<double> seen(files_.size(), 0), predicted(files_.size(), 0);
+    if (!prepare(shared, false)) return std::vector<double>(files_.size(), 1);
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+        for (std::size_t k = 0; k < colours_; ++k) {
+            seen[cells_[i].picture] += cells_[i].mean[k] - dark_;
+            predicted[cells_[i].picture] += light_[i][k] - dark_;
         }
+    for (std::size_t picture = 0; picture < files_.size(); ++picture)
+        seen[picture] =
+            seen[picture] > 0 && predicted[picture] > 0 ? seen[picture] / predicted[picture] : 1;
+    return seen;
+}
+
+void PictureResiduals::group_unknowns(std::span<const double> shared) {
+    moved_.resize(shared.size());
+    std::vector<std::array<bool, 3>> taken;  // per group
+    // Where light is scattered once, it has no noise.
+    const Prediction before = predict(shared, Light::scattered_once);
+    for (std::size_t i = 0; i < shared.size(); ++i) {
+        std::vector<double> values(shared.begin(), shared.end());
+        const SceneUnknown& unknown = unknowns_.all()[i];
+        if (unknown.of != SceneUnknown::Of::scene) continue;
+        const double step = steps_[i];
+        values[i] = values[i] + step <= unknown.upper ? values[i] + step : values[i] - step;
+        const Prediction after = predict(values, Light::scattered_once);
+        std::array<bool, 3>& colours = moved_[i].colours;
+        std::array<double, 3> changes{};
+        for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+            for (std::size_t k = 0; k < colours_; ++k)
+                changes[k] +=
+                    std::pow((after[cell][k] - before[cell][k]) / cells_[cell].error[k], 2);
+        // Where quadrature refines for one band, others change by its tolerance. If nothing changes
+        // at all, what is scattered again may.
+        constexpr double k_independent = 1e-2;
+        const double most = *std::ranges::max_element(changes);
+        for (std::size_t k = 0; k < colours.size(); ++k)
+            colours[k] = most == 0 || changes[k] > k_independent * k_independent * most;
+        const auto overlaps = [&](const std::array<bool, 3>& other) {
+            for (std::size_t k = 0; k < other.size(); ++k)
+                if (other[k] && colours[k]) return true;
+            return false;
+        };
+        const auto place = std::ranges::find_if_not(taken, overlaps);
+        moved_[i].group = static_cast<std::size_t>(place - taken.begin());
+        if (place == taken.end()) {
+            taken.push_back(colours);
+            together_.push_back({{i}, {}, {}});
+            continue;
+        }
+        for (std::size_t k = 0; k < colours.size(); ++k)
+            if (colours[k]) (*place)[k] = true;
+        together_[moved_[i].group].unknowns.push_back(i);
     }
-    // Light is interpolated, so that small steps would measure the tables; of larger ones central
-    // differences are off by the square, 1e-4.
-    constexpr double k_step = 1e-2;
+}
+
+void PictureResiduals::take_derivatives(std::span<const double> shared) {
+    if (moved_.empty()) group_unknowns(shared);
+    derivatives_at_.clear();
     for (Together& group : together_) {
         std::vector<double> back(shared.begin(), shared.end()), ahead = back;
         for (const std::size_t i : group.unknowns) {
             const SceneUnknown& unknown = unknowns_.all()[i];
-            back[i] = std::max(shared[i] - k_step * unknown.scale, unknown.lower);
-            ahead[i] = std::min(shared[i] + k_step * unknown.scale, unknown.upper);
+            back[i] = std::max(shared[i] - steps_[i], unknown.lower);
+            ahead[i] = std::min(shared[i] + steps_[i], unknown.upper);
             moved_[i].step = ahead[i] - back[i];
         }
-        group.back = predict(back);
-        group.ahead = predict(ahead);
+        group.back = predict(back, Light::of_the_scene);
+        group.ahead = predict(ahead, Light::of_the_scene);
     }
+    derivatives_at_.assign(shared.begin(), shared.end());
 }
 
-void PictureResiduals::group_unknowns() {
-    is_grouped_ = true;
-    std::vector<Together> groups;
-    std::vector<std::array<bool, 3>> taken;  // per group
-    for (std::size_t i = 0; i < moved_.size(); ++i) {
-        const Together& alone = together_[i];
-        for (std::size_t k = 0; k < moved_[i].colours.size(); ++k) {
-            moved_[i].colours[k] = false;
-            for (std::size_t cell = 0; cell < cells_.size(); ++cell)
-                if (alone.back[cell][k] != alone.ahead[cell][k]) moved_[i].colours[k] = true;
-        }
-        const auto overlaps = [&](const std::array<bool, 3>& other) {
-            for (std::size_t k = 0; k < other.size(); ++k)
-                if (other[k] && moved_[i].colours[k]) return true;
+bool PictureResiduals::is_near(std::span<const double> shared, std::span<const double> other,
+                               double steps) const {
+    if (other.empty()) return false;
+    for (std::size_t i = 0; i < shared.size(); ++i) {
+        const SceneUnknown& unknown = unknowns_.all()[i];
+        if (unknown.of == SceneUnknown::Of::scene &&
+            !(std::abs(shared[i] - other[i]) <= steps * steps_[i]))
             return false;
-        };
-        const auto place = std::ranges::find_if_not(taken, overlaps);
-        const auto group = static_cast<std::size_t>(place - taken.begin());
-        if (place == taken.end()) {
-            groups.push_back(alone);
-            taken.push_back(moved_[i].colours);
-        } else {
-            Together& shared = groups[group];
-            shared.unknowns.push_back(i);
-            for (std::size_t k = 0; k < place->size(); ++k) {
-                if (!moved_[i].colours[k]) continue;
-                (*place)[k] = true;
-                for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-                    shared.back[cell][k] = alone.back[cell][k];
-                    shared.ahead[cell][k] = alone.ahead[cell][k];
-                }
-            }
-        }
-        moved_[i].group = group;
     }
-    together_ = std::move(groups);
+    return true;
 }
 
 bool PictureResiduals::prepare(std::span<const double> shared, bool with_derivatives) {
-    const bool is_same = std::ranges::equal(shared, prepared_);
-    if (is_same && (has_derivatives_ || !with_derivatives)) return true;
+    shared_.assign(shared.begin(), shared.end());
     try {
-        if (!is_same) prediction_ = predict(shared);
-        prepared_.assign(shared.begin(), shared.end());
-        has_derivatives_ = false;
-        if (!with_derivatives) return true;
-        move_groups(shared);
-        if (!is_grouped_) group_unknowns();
-        has_derivatives_ = true;
+        if (!is_near(shared, light_of_, 0)) {
+            light_of_.clear();
+            light_ = predict(shared, Light::of_the_scene);
+            light_of_ = shared_;
+        }
+        if (with_derivatives && !is_near(shared, derivatives_at_, has_all_light_ ? 0.1 : 1))
+            take_derivatives(shared);
         return true;
     } catch (const InputError&) {
-        prepared_.clear();
+        light_of_.clear();
         return false;  // no such scene: the solver takes a smaller step
     }
 }
@@ -350,14 +456,23 @@ bool PictureResiduals::evaluate(std::size_t group, const Block* /*block*/, doubl
     const Cell& cell = cells_[group];
     for (std::size_t k = 0; k < colours_; ++k) {
         const double error = cell.error[k] * deviation();
-        residuals[k] = (prediction_[group][k] - cell.mean[k]) / error;
+        const Seen predicted = seen(group, light_[group][k]);
+        residuals[k] = (predicted.value - cell.mean[k]) / error;
         if (by_shared == nullptr) continue;
-        for (std::size_t i = 0; i < moved_.size(); ++i) {
-            const Together& moved = together_[moved_[i].group];
-            by_shared[k * moved_.size() + i] =
-                moved_[i].colours[k]
-                    ? (moved.ahead[group][k] - moved.back[group][k]) / (moved_[i].step * error)
-                    : 0;
+        const std::size_t n = shared_.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            double derivative = 0;
+            if (unknowns_.all()[i].of != SceneUnknown::Of::scene) {
+                if (response_ && i == *response_)
+                    derivative = predicted.by_power;
+                else if (unknowns_.all()[i].picture == cell.picture)
+                    derivative = predicted.by_exposure;
+            } else if (moved_[i].colours[k]) {
+                const Together& moved = together_[moved_[i].group];
+                derivative = predicted.by_light * (moved.ahead[group][k] - moved.back[group][k]) /
+                             moved_[i].step;
+            }
+            by_shared[k * n + i] = derivative / error;
         }
     }
     return true;
@@ -370,6 +485,28 @@ std::vector<ResidualGroup> PictureResiduals::groups() const {
 Observations::Place PictureResiduals::place(std::size_t group) const {
     const Cell& cell = cells_[group];
     return {cell.picture, {(cell.x + 0.5) * cell_side_, (cell.y + 0.5) * cell_side_}};
+}
+
+double PictureResiduals::clustering(std::span<const double> residuals,
+                                    const std::vector<bool>& outliers) const {
+    constexpr int k_blocks_across = 5;
+    const int side = std::max(1, width_ / k_blocks_across);
+    // By picture, block and colour; of independent residuals the square of a sum is, in the mean,
+    // the sum of the squares.
+    std::map<std::array<std::size_t, 4>, double> sums;
+    double squares = 0;
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        if (outliers[i]) continue;
+        for (std::size_t k = 0; k < colours_; ++k) {
+            const double residual = residuals[i * colours_ + k];
+            sums[{cells_[i].picture, static_cast<std::size_t>(cells_[i].x / side),
+                  static_cast<std::size_t>(cells_[i].y / side), k}] += residual;
+            squares += residual * residual;
+        }
+    }
+    double of_blocks = 0;
+    for (const auto& [block, sum] : sums) of_blocks += sum * sum;
+    return squares > 0 ? std::max(1.0, of_blocks / squares) : 1;
 }
 
 double PictureResiduals::relative_rms(const FitResult& result) const {
@@ -400,7 +537,7 @@ PictureResiduals::Comparison PictureResiduals::comparison(std::size_t picture) c
         for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t colour = std::min(k, colours_ - 1);
             comparison.seen[index][k] = cell.mean[colour];
-            comparison.predicted[index][k] = prediction_[i][colour];
+            comparison.predicted[index][k] = seen(i, light_[i][colour]).value;
         }
     }
     return comparison;

@@ -2,13 +2,16 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "core/scene/scene_desc.h"
+#include "core/scene/trajectory.h"
 #include "fit/robust_fit.h"
 #include "fit/unknowns.h"
 #include "render/renderer.h"
@@ -21,6 +24,9 @@ namespace uw {
 struct ObservedPicture {
     std::filesystem::path file;
     ImageChoice choice;
+    /// In the place of the scene's, before the `transform` of its camera's trajectory, if it has
+    /// one.
+    std::optional<Pose> world_from_camera{};
 };
 
 /// The pictures that a name stands for: a file, or, with a pattern for the frame's number
@@ -36,7 +42,8 @@ std::vector<ObservedPicture> pictures_called(const std::filesystem::path& name);
 /// Scenes with a sensor predict its numbers as they are stored raw, from which the sensor's black
 /// level, gain, mosaic and efficiencies follow; other scenes red, green and blue, of pictures with
 /// linear values as they are, of others by the sRGB curve. Cells in which a pixel is white are left
-/// out.
+/// out. Unknown exposures multiply the light of each picture, and an unknown response is the power
+/// to which that is raised: 1 where a camera's curve is sRGB's.
 class PictureResiduals final : public Observations {
   public:
     /// `cells`: across a picture's width. `unknowns` outlive it. Throws InputError for pictures
@@ -55,6 +62,15 @@ class PictureResiduals final : public Observations {
     const char* noun() const override { return "cell"; }
     const char* unit() const override { return "times the scatter"; }
     double of_group(double rms) const override { return rms; }
+    bool is_rough() const override { return has_all_light_; }
+    /// Of the means over blocks of cells, five across a picture: what cells share, such as the
+    /// errors of light that is interpolated between nodes.
+    double clustering(std::span<const double> residuals,
+                      const std::vector<bool>& outliers) const override;
+
+    /// By what the light of the scene with these unknowns, exposures of 1, is to be multiplied for
+    /// each picture to be as bright as it is.
+    std::vector<double> exposures_at(std::span<const double> shared);
 
     /// The RMS of prediction less observation over the mean of what was observed, for the cells
     /// that `result` keeps.
@@ -78,10 +94,22 @@ class PictureResiduals final : public Observations {
     };
     using Prediction = std::vector<Colours>;  // of each cell
 
+    /// Which light: all that the scene has; the same with no more nodes than cells, for
+    /// differences, in which their errors cancel; or, which takes far less time, that scattered
+    /// once.
+    enum class Light : std::uint8_t { of_the_scene, coarsely, scattered_once };
+
     void read(std::size_t picture, const SceneDesc& scene);
-    Prediction predict(std::span<const double> values);
-    void move_groups(std::span<const double> shared);
-    void group_unknowns();
+    Prediction predict(std::span<const double> values, Light light);
+    void group_unknowns(std::span<const double> shared);
+    void take_derivatives(std::span<const double> shared);
+    /// Whether scenes are within so many steps of each other.
+    bool is_near(std::span<const double> shared, std::span<const double> other, double steps) const;
+    /// What a cell shows of light that the scene predicts, and its derivatives.
+    struct Seen {
+        double value = 0, by_light = 0, by_exposure = 0, by_power = 0;
+    };
+    Seen seen(std::size_t cell, double light) const;
 
     const SceneUnknowns& unknowns_;
     std::vector<ObservedPicture> files_;
@@ -91,16 +119,25 @@ class PictureResiduals final : public Observations {
     std::size_t colours_ = 3;
     std::vector<Cell> cells_;
     std::deque<Renderer> renderers_;  // one per picture, which keeps what does not change
-    std::vector<double> prepared_;    // for which unknowns; empty: none
-    bool has_derivatives_ = false;
-    Prediction prediction_;
+    bool has_all_light_ = false;
+    int pixels_per_side_ = 1;  // rendered of a cell
+    double model_error_ = 0;
+    std::vector<double> steps_;            // per unknown, of derivatives
+    std::vector<std::size_t> exposures_;   // the unknowns that are those of pictures; or none
+    std::optional<std::size_t> response_;  // the unknown that is it
+    double dark_ = 0;                      // what is seen without light
+    std::vector<double> shared_;           // the unknowns as they were prepared last
+    Prediction light_;                     // of the scene
+    std::vector<double> light_of_;         // for which unknowns; empty: none
+    /// Where derivatives were taken; empty: nowhere. They are differences over a step to either
+    /// side, and serve within it.
+    std::vector<double> derivatives_at_;
     /// Unknowns that are moved together, as no colour depends on two of them: those of bands.
     struct Together {
         std::vector<std::size_t> unknowns;
         Prediction back, ahead;
     };
     std::vector<Together> together_;
-    bool is_grouped_ = false;  // before, each unknown is moved by itself
     /// Per unknown: the colours that depend on it, in which of together_ it is, and its step from
     /// back to ahead.
     struct Moved {

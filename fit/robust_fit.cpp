@@ -21,7 +21,8 @@ constexpr double k_outlier = 5;
 /// Where Cauchy's loss has 95 % of the efficiency of squares for normal residuals.
 constexpr double k_cauchy = 2.385;
 
-/// Relative changes of the sum at which it has converged.
+/// Relative changes of the sum at which it has converged; where it is rough, the first at all
+/// times.
 constexpr double k_on_the_way = 1e-4, k_in_the_end = 1e-8;
 
 /// Residuals of all groups as a problem's unknowns have them, in the observations' unit; infinite
@@ -119,7 +120,8 @@ class Rounds {
   private:
     LeastSquaresOutcome round(const char* stage, double loss_scale, double tolerance) {
         problem_.loss_scale = loss_scale;
-        problem_.tolerance = tolerance;
+        problem_.is_rough = observations_.is_rough();
+        problem_.tolerance = problem_.is_rough ? k_on_the_way : tolerance;
         problem_.most_iterations = tolerance < k_on_the_way ? 100 : 25;
         if (options_.progress)
             problem_.progress = [&, stage](int, double cost) { options_.progress(stage, cost); };
@@ -163,9 +165,11 @@ void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
         if (error > 1) {
             FreeDirection direction;
             direction.error = error;
-            constexpr double k_counts = 0.2;
+            constexpr double k_counts = 0.2;  // of the most affected
+            double most = 0;
+            for (const double share : vector) most = std::max(most, std::abs(share));
             for (std::size_t i = 0; i < n; ++i)
-                if (std::abs(vector[i]) > k_counts) direction.unknowns.push_back(i);
+                if (std::abs(vector[i]) > k_counts * most) direction.unknowns.push_back(i);
             std::ranges::sort(direction.unknowns, std::greater{},
                               [&](std::size_t i) { return std::abs(vector[i]); });
             for (const std::size_t i : direction.unknowns) direction.shares.push_back(vector[i]);
@@ -283,8 +287,9 @@ FitResult robust_fit(Observations& observations, const SceneUnknowns& unknowns,
         result.values.push_back(std::move(found));
     }
     // The information is in units of the deviation that was assumed; priors are in their own.
+    result.clustering = observations.clustering(result.residuals, result.outliers);
     const double ratio = deviation / result.deviation;
-    for (double& entry : outcome.information) entry *= ratio * ratio;
+    for (double& entry : outcome.information) entry *= ratio * ratio / result.clustering;
     find_errors(outcome, result);
     return result;
 }

@@ -34,6 +34,15 @@ class Observations : public ResidualFunction {
     virtual const char* unit() const = 0;
     virtual double of_group(double rms) const = 0;
 
+    /// Whether predictions have noise of their own, which changes with the unknowns.
+    virtual bool is_rough() const { return false; }
+    /// By how much neighbouring residuals that hang together enlarge the variance of what is found,
+    /// at least 1: independent ones do not. `residuals` of all groups, `outliers` per group.
+    virtual double clustering(std::span<const double> /*residuals*/,
+                              const std::vector<bool>& /*outliers*/) const {
+        return 1;
+    }
+
     /// The standard deviation of a residual, in the observations' own unit.
     void set_deviation(double deviation) { deviation_ = deviation; }
     double deviation() const { return deviation_; }
@@ -86,7 +95,8 @@ struct FitResult {
     std::vector<double> residuals;          // of all groups, in the observations' unit
     std::vector<bool> outliers;             // per group
     double rms = 0, rms_with_outliers = 0;  // over residuals, in the observations' unit
-    double deviation = 0;  // of a residual, estimated: with as many fewer as there are unknowns
+    double deviation = 0;   // of a residual, estimated: with as many fewer as there are unknowns
+    double clustering = 1;  // Observations::clustering, which the errors hold
     double rms_at_start = 0;
     int iterations = 0;
     std::vector<double> costs;  // of each start, as found

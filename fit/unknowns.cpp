@@ -25,6 +25,10 @@ std::optional<double> number_in(const ConfigNode& node) {
     return value;
 }
 
+/// What is unknown of pictures, beside what is of scenes.
+constexpr double k_least_exposure = 1e-3;  // of where it begins
+constexpr std::string_view k_exposure = "exposure", k_response = "response";
+
 /// The segments of a path: "lamps.*.position[0]" are lamps, *, position, [0].
 std::vector<std::string> segments_of(const std::string& path) {
     std::vector<std::string> segments;
@@ -44,9 +48,14 @@ bool is_direction(const ConfigNode& node, std::string_view path) {
 }  // namespace
 
 SceneUnknowns::SceneUnknowns(ConfigNode tree, std::filesystem::path file,
-                             std::span<const std::string> keys)
+                             std::span<const std::string> keys,
+                             std::span<const std::string> pictures)
     : tree_(std::move(tree)), file_(std::move(file)) {
     for (const std::string& key : keys) {
+        if (key == k_exposure || key == k_response) {
+            add_of_pictures(key, pictures);
+            continue;
+        }
         const std::vector<std::string> segments = segments_of(key);
         if (segments.empty())
             throw UsageError(
@@ -99,6 +108,33 @@ void SceneUnknowns::expand(const ConfigNode& node, std::span<const std::string> 
                                          : fmt::format("did you mean '{}'?", nearest)));
     }
     expand(*found, steps.subspan(1), next);
+}
+
+void SceneUnknowns::add_of_pictures(const std::string& key, std::span<const std::string> pictures) {
+    if (pictures.empty())
+        throw UsageError(fmt::format(
+            "--unknown {}: is that of pictures, and corners do not tell it; leave it out", key));
+    const auto add_one = [&](const std::string& path, const std::string& name, SceneUnknown::Of of,
+                             std::size_t picture) {
+        places_.push_back({path, unknowns_.size()});
+        SceneUnknown unknown{name, "", 1, 1, k_least_exposure};
+        unknown.of = of;
+        unknown.picture = picture;
+        unknowns_.push_back(std::move(unknown));
+    };
+    if (key == k_response) {
+        add_one(key, key, SceneUnknown::Of::response, 0);
+        return;
+    }
+    for (std::size_t i = 0; i < pictures.size(); ++i) {
+        const std::string path = fmt::format("{}[{}]", key, i);
+        add_one(path, fmt::format("{} ({})", path, pictures[i]), SceneUnknown::Of::exposure, i);
+    }
+}
+
+void SceneUnknowns::begin_at(std::size_t unknown, double exposure) {
+    unknowns_[unknown].start = unknowns_[unknown].scale = exposure;
+    unknowns_[unknown].lower = k_least_exposure * exposure;
 }
 
 void SceneUnknowns::add(const ConfigNode& node, const std::string& path) {
@@ -169,7 +205,7 @@ void SceneUnknowns::limit() {
         return from;
     };
     for (const Place& place : places_) {
-        if (place.is_direction) continue;
+        if (place.is_direction || unknowns_[place.first].of != SceneUnknown::Of::scene) continue;
         SceneUnknown& unknown = unknowns_[place.first];
         const double below = -1e-3 * unknown.scale, above = 1e3 * unknown.scale;
         if (unknown.start >= 0 && is_refused(place.first, below))
@@ -184,6 +220,7 @@ std::vector<std::pair<std::string, std::string>> SceneUnknowns::settings(
     std::span<const double> values) const {
     std::vector<std::pair<std::string, std::string>> all;
     for (const Place& place : places_) {
+        if (unknowns_[place.first].of != SceneUnknown::Of::scene) continue;
         if (!place.is_direction) {
             all.emplace_back(place.path, number_text(values[place.first]));
             continue;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <span>
@@ -13,8 +15,13 @@
 
 namespace uw {
 
-/// One unknown number of a scene.
+/// One unknown number of a scene, or of the pictures that show it.
 struct SceneUnknown {
+    enum class Of : std::uint8_t {
+        scene,
+        exposure,  // of a picture: its light is so many times the scene's
+        response,  // of all pictures: their light is the scene's to this power
+    };
     std::string name;  // "water.absorption[0]", "camera.port.normal (tilt 1)"
     std::string unit;  // "deg" of tilts; else empty: the scene's own
     double start = 0;
@@ -22,6 +29,8 @@ struct SceneUnknown {
     /// What scenes may have.
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
+    Of of = Of::scene;
+    std::size_t picture = 0;  // whose exposure it is
 };
 
 /// Numbers of a scene that are to be found, and the scenes that have given ones in their place.
@@ -30,13 +39,18 @@ class SceneUnknowns {
     /// `keys` are paths as of --set, "water.absorption" or "camera.port.distance", where * stands
     /// for every entry: "lamps.*.position". A list of numbers is an unknown for each; a `normal` or
     /// `direction` is two, by which it is tilted [deg]. Where numbers end of their own accord, such
-    /// as at 0, is found by trying them with the scene's reader. `file` is the scene's. Throws
-    /// UsageError for keys that the scene does not have or that hold no numbers, and as
-    /// load_scene_tree.
-    SceneUnknowns(ConfigNode tree, std::filesystem::path file, std::span<const std::string> keys);
+    /// as at 0, is found by trying them with the scene's reader. `file` is the scene's. Two keys
+    /// are no scene's: "exposure", one of each of the `pictures`, and "response"; both begin at 1.
+    /// Throws UsageError for keys that the scene does not have or that hold no numbers, for these
+    /// two without pictures, and as load_scene_tree.
+    SceneUnknowns(ConfigNode tree, std::filesystem::path file, std::span<const std::string> keys,
+                  std::span<const std::string> pictures = {});
 
     const std::vector<SceneUnknown>& all() const { return unknowns_; }
     std::size_t size() const { return unknowns_.size(); }
+
+    /// Where an exposure is to begin, > 0.
+    void begin_at(std::size_t unknown, double exposure);
 
     /// The scene with these values, one per unknown. Throws InputError if none may have them.
     SceneDesc scene(std::span<const double> values) const;
@@ -57,6 +71,7 @@ class SceneUnknowns {
         Vector3 direction{};  // unit, as the scene has it
         Vector3 tilts[2]{};   // unit, across it and each other
     };
+    void add_of_pictures(const std::string& key, std::span<const std::string> pictures);
     void add(const ConfigNode& node, const std::string& path);
     void add_number(const ConfigNode& node, const std::string& path, double scale);
     void expand(const ConfigNode& node, std::span<const std::string> steps,

@@ -92,7 +92,7 @@ py::object state_of(const LoadedGrid& grid) {
     return py::make_tuple(
         grid.name, matrix_of(grid.file_from_index), bricks,
         py::make_tuple(s.active_voxels, s.nan_voxels, s.infinite_voxels, s.negative_voxels),
-        py::make_tuple(s.background, s.min, s.mean, s.max), grid.warnings);
+        py::make_tuple(s.background, s.min, s.mean, s.max), grid.warnings, grid.size);
 }
 
 std::shared_ptr<const LoadedGrid> grid_of_state(const py::tuple& state) {
@@ -106,6 +106,7 @@ std::shared_ptr<const LoadedGrid> grid_of_state(const py::tuple& state) {
     grid->statistics = {counts[0], counts[1], counts[2], counts[3],
                         values[0], values[1], values[2], values[3]};
     grid->warnings = state[5].cast<std::vector<std::string>>();
+    grid->size = state[6].cast<std::array<std::size_t, 3>>();
     return grid;
 }
 

@@ -14,6 +14,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "core/base/error.h"
@@ -27,7 +28,7 @@
 #include "python/bindings.h"
 #include "python/scene.h"
 #include "python/watched_task.h"
-#include "render/image_derivative.h"
+#include "render/derivatives.h"
 #include "render/image_header.h"
 #include "render/image_scene.h"
 #include "render/scene_loading.h"
@@ -273,6 +274,7 @@ struct Wanted {
     ImageChoice choice;
     RenderOptions options;
     std::vector<std::string> derivatives;
+    int seed = 0;  // of derivatives
 };
 
 [[noreturn]] void refuse_setting(const py::dict& settings, const char* key, const char* expected) {
@@ -308,6 +310,8 @@ Wanted wanted_of(const py::dict& settings) {
     take("frame", wanted.choice.frame, "a whole number");
     take("camera", wanted.choice.camera, number);
     take("derivatives", wanted.derivatives, "names of derivatives");
+    take("seed", wanted.seed, number);
+    if (wanted.seed < 0) refuse_setting(settings, "seed", number);
     if (wanted.image.samples && *wanted.image.samples < 1)
         refuse_setting(settings, "samples", "a whole number of 1 or more");
     if (wanted.image.size && std::ranges::min(*wanted.image.size) < 1)
@@ -347,6 +351,49 @@ class RendererObject : public RunClient {
         return std::move(image_);
     }
 
+    /// A change of a scene: the number's key, the scene with less and with more of it, and by how
+    /// much the number differs between them.
+    using Change = std::tuple<std::string, const SceneObject*, const SceneObject*, double>;
+
+    /// The derivatives (changes, rows, columns, bands) of the image that `render` would give.
+    py::array_t<float> derivatives(const SceneObject& scene, const std::vector<Change>& changes,
+                                   const py::dict& settings, const py::object& progress) {
+        const Wanted wanted = wanted_of(settings);
+        std::vector<ChangedScene> changed;
+        for (const auto& [name, less, more, step] : changes)
+            changed.push_back({name, image_of(*less, wanted), image_of(*more, wanted), step});
+        const ImageScene itself = image_of(scene, wanted);
+        const CameraDesc& camera = itself.desc().camera;
+        const PixelWindow window =
+            wanted.options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
+        std::vector<float> values = differentiate(itself, progress, [&](Renderer& renderer) {
+            return scene_derivatives(renderer, changed, derived(wanted), told("derivatives"));
+        });
+        return owned(std::move(values),
+                     {static_cast<py::ssize_t>(changes.size()), window.height(), window.width(),
+                      static_cast<py::ssize_t>(itself.desc().water.bands_nm.size())});
+    }
+
+    /// The derivatives of a number by the values of the array of a volume, from those by the light
+    /// of the image's pixels (rows, columns, bands).
+    py::array_t<float> voxel_derivatives(
+        const SceneObject& scene, std::size_t volume,
+        const py::array_t<double, py::array::c_style | py::array::forcecast>& weights,
+        const py::dict& settings, const py::object& progress) {
+        const Wanted wanted = wanted_of(settings);
+        const ImageScene itself = image_of(scene, wanted);
+        const std::span<const double> values(weights.data(),
+                                             static_cast<std::size_t>(weights.size()));
+        std::vector<float> found = differentiate(itself, progress, [&](Renderer& renderer) {
+            return uw::voxel_derivatives(renderer, volume, values, derived(wanted),
+                                         told("derivatives"));
+        });
+        std::vector<py::ssize_t> shape;
+        for (const std::size_t side : itself.desc().volumes[volume].array->size)
+            shape.push_back(static_cast<py::ssize_t>(side));
+        return owned(std::move(found), shape);
+    }
+
     void clear() {
         const std::unique_lock alone(busy_, std::try_to_lock);
         if (!alone) throw UsageError("clear: this Renderer is at work in another thread");
@@ -377,9 +424,13 @@ class RendererObject : public RunClient {
             image_->objects = numbered(names.objects);
             image_->materials = numbered(names.materials);
         }
-        for (const std::string& name : wanted_->derivatives)
-            image_->derivatives[name] =
-                image_derivative(engine_->renderer(), name, wanted_->options);
+        const std::vector<std::string>& names = wanted_->derivatives;
+        if (names.empty()) return {};
+        const std::vector<float> all =
+            named_derivatives(engine_->renderer(), names, derived(*wanted_), told("derivatives"));
+        const std::size_t each = all.size() / names.size();
+        for (std::size_t i = 0; i < names.size(); ++i)
+            image_->derivatives[names[i]].assign(&all[i * each], &all[i * each] + each);
         return {};
     }
 
@@ -390,6 +441,51 @@ class RendererObject : public RunClient {
     void tell(const std::string& stage, double fraction) override { task_.tell(stage, fraction); }
 
   private:
+    static DerivativeOptions derived(const Wanted& wanted) {
+        return {wanted.options.window, wanted.seed};
+    }
+
+    static ImageScene image_of(const SceneObject& scene, const Wanted& wanted) {
+        SceneDesc desc = *scene.desc();
+        apply_request(wanted.image, desc);
+        return scene_of_image(desc, wanted.choice);
+    }
+
+    ShareCallback told(const char* stage) {
+        return [this, stage](double share) { tell(stage, share); };
+    }
+
+    /// What `work` makes with the renderer, which has the scene.
+    template <class Work>
+    std::vector<float> differentiate(const ImageScene& scene, const py::object& progress,
+                                     const Work& work) {
+        const std::unique_lock alone(busy_, std::try_to_lock);
+        if (!alone)
+            throw UsageError(
+                "derivatives: this Renderer is at work, in another thread or further up; make one "
+                "for each thread");
+        std::vector<float> values;
+        const auto differentiated = [&](Renderer& renderer) {
+            renderer.set_scene(scene);
+            values = work(renderer);
+        };
+        const py::gil_scoped_release release;
+        task_.run([&] { with_threads(threads_, [&] { engine_->lend(*this, differentiated); }); },
+                  [&](const std::vector<WatchedTask::News>& news) { watch(news, progress); });
+        return values;
+    }
+
+    /// An array that owns the values.
+    static py::array_t<float> owned(std::vector<float> values,
+                                    const std::vector<py::ssize_t>& shape) {
+        auto kept = std::make_unique<std::vector<float>>(std::move(values));
+        const float* const data = kept->data();
+        const py::capsule owner(kept.release(), [](void* pointer) {
+            delete static_cast<std::vector<float>*>(pointer);
+        });
+        return py::array_t<float>(shape, data, owner);
+    }
+
     void work(const SceneDesc& desc) {
         JobScenes scenes([&](int /*number*/) {
             SceneDesc requested = desc;
@@ -423,6 +519,10 @@ void bind_renderer(py::module_& module) {
         .def(py::init<int>(), py::arg("threads"))
         .def("render", &RendererObject::render, py::arg("scene"), py::arg("settings"),
              py::arg("progress"))
+        .def("derivatives", &RendererObject::derivatives, py::arg("scene"), py::arg("changes"),
+             py::arg("settings"), py::arg("progress"))
+        .def("voxel_derivatives", &RendererObject::voxel_derivatives, py::arg("scene"),
+             py::arg("volume"), py::arg("weights"), py::arg("settings"), py::arg("progress"))
         .def("clear", &RendererObject::clear);
 }
 

@@ -20,7 +20,7 @@ struct ImageObject {
     RenderReport report;
     std::vector<double> bands_nm;
     std::map<int, std::string> objects, materials;            // names by number
-    std::map<std::string, std::vector<float>> derivatives{};  // image_derivative
+    std::map<std::string, std::vector<float>> derivatives{};  // named_derivatives
     std::optional<ViewDesc> view{};                           // that pictures are seen through
 };
 

@@ -118,6 +118,12 @@ void SceneObject::append(const std::string& section, ConfigNode entry, SceneArra
     replace(std::move(tree), std::move(all));
 }
 
+void SceneObject::set_grid(const std::string& name, std::shared_ptr<const LoadedGrid> grid) {
+    SceneArrays arrays = arrays_;
+    arrays.grids.at(name) = std::move(grid);
+    replace(tree_, std::move(arrays));
+}
+
 SceneObject SceneObject::variation(int number) const {
     VariedScene varied = variations_of(*this, number).varied(number, &arrays_);
     SceneObject scene;
@@ -179,24 +185,46 @@ py::object get(const SceneObject& scene, const std::string& path) {
     return object_of(*node);
 }
 
-void add_volume(SceneObject& scene, const std::string& name, const FloatArray& array,
-                const DoubleRows& place, const py::dict& entry, const std::string& where) {
+ArrayView view_of(const FloatArray& array) {
     ArrayView view{array.data(), {}, {}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         view.size[axis] = static_cast<std::size_t>(array.shape(static_cast<py::ssize_t>(axis)));
         view.steps[axis] = array.strides(static_cast<py::ssize_t>(axis)) /
                            static_cast<std::ptrdiff_t>(sizeof(float));
     }
-    const Affine map = affine_of(place);
+    return view;
+}
+
+std::shared_ptr<const LoadedGrid> grid_of(const FloatArray& array, const Affine& place,
+                                          const std::string& name, const std::string& where) {
+    std::shared_ptr<const LoadedGrid> grid;
+    WatchedTask task;
+    run_interruptible(task, [&] {
+        grid =
+            std::make_shared<const LoadedGrid>(grid_of_array(view_of(array), place, name, where));
+    });
+    return grid;
+}
+
+void add_volume(SceneObject& scene, const std::string& name, const FloatArray& array,
+                const DoubleRows& place, const py::dict& entry, const std::string& where) {
     ConfigNode node = node_of(entry, where);
     set_origin(node, where);
     SceneArrays arrays;
-    WatchedTask task;
-    run_interruptible(task, [&] {
-        arrays.grids[name] =
-            std::make_shared<const LoadedGrid>(grid_of_array(view, map, name, where));
-    });
+    arrays.grids[name] = grid_of(array, affine_of(place), name, where);
     scene.append("volumes", std::move(node), std::move(arrays));
+}
+
+void set_array(SceneObject& scene, const std::string& name, const FloatArray& array,
+               const std::string& where) {
+    const auto found = scene.arrays().grids.find(name);
+    if (found == scene.arrays().grids.end())
+        throw UsageError(fmt::format("{}: the scene has no array '{}'", where, printable(name)));
+    const LoadedGrid& before = *found->second;
+    if (view_of(array).size != before.size)
+        throw UsageError(fmt::format("{}: expected an array of shape ({}, {}, {}), as before",
+                                     where, before.size[0], before.size[1], before.size[2]));
+    scene.set_grid(name, grid_of(array, before.file_from_index, name, where));
 }
 
 using Corners = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
@@ -286,6 +314,7 @@ void bind_scene(py::module_& module) {
              })
         .def("remove", &SceneObject::remove, py::arg("path"))
         .def("add_volume", add_volume)
+        .def("set_array", set_array)
         .def("add_mesh", add_mesh)
         .def(
             "variation",

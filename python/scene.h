@@ -35,6 +35,9 @@ class SceneObject {
     /// UsageError if something in memory has its name already.
     void append(const std::string& section, ConfigNode entry, SceneArrays arrays);
 
+    /// Puts other values in the place of a grid in memory.
+    void set_grid(const std::string& name, std::shared_ptr<const LoadedGrid> grid);
+
     /// The scene with the values of one of its variations, counted from 0 (SceneVariations).
     /// UsageError if there is none.
     SceneObject variation(int number) const;

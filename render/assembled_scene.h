@@ -63,7 +63,6 @@ struct AssembledScene {
                 field.get(),
                 surfaces.get(),
                 &emitters,
-                {},
                 lamp_surfaces.empty() ? nullptr : &lamp_surfaces,
                 glows.empty() ? nullptr : &glows,
                 water_surface ? &*water_surface : nullptr};

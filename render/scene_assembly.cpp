@@ -217,14 +217,11 @@ LightTransport make_by(RenderDesc::Integrator integrator, const LitScene& lit,
                {deep_shadows.begin(), deep_shadows.end()}});
 }
 
-LightTransport transport_in(const Medium& medium, const PathWeight& path_weight,
-                            const AssembledScene& scene, const DeepShadows& deep_shadows) {
+LightTransport transport_in(const Medium& medium, const AssembledScene& scene,
+                            const DeepShadows& deep_shadows) {
     LitScene lit = scene.lit();
     lit.medium = &medium;
-    lit.path_weight = path_weight;
-    LightTransport transport = make_by(scene.desc().render.integrator, lit, scene, deep_shadows);
-    transport.path_weight = path_weight;
-    return transport;
+    return make_by(scene.desc().render.integrator, lit, scene, deep_shadows);
 }
 
 void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {
@@ -310,7 +307,7 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
 LightTransport make_light_transport(const AssembledScene& scene, const DeepShadows& deep_shadows,
                                     bool with_paths) {
     const auto make = [&](const Medium& medium) {
-        return transport_in(medium, {}, scene, deep_shadows);
+        return transport_in(medium, scene, deep_shadows);
     };
     LightTransport transport = make(scene.water.medium);
     if (scene.snow)
@@ -332,13 +329,6 @@ LightTransport make_path_transport(const AssembledScene& scene,
         make_by(RenderDesc::Integrator::path, scene.lit(), scene, DeepShadows());
     transport.paths = std::make_shared<PathTracer>(
         scene.lit(), std::vector<std::shared_ptr<const DeepShadow>>(), std::move(scattering));
-    return transport;
-}
-
-LightTransport make_single_scattering(const AssembledScene& scene, const DeepShadows& deep_shadows,
-                                      const Medium& medium, const PathWeight& path_weight) {
-    LightTransport transport = transport_in(medium, path_weight, scene, deep_shadows);
-    weigh_as_output(scene.desc(), transport);
     return transport;
 }
 

@@ -47,12 +47,6 @@ LightTransport make_light_transport(const AssembledScene& scene, const DeepShado
 LightTransport make_path_transport(const AssembledScene& scene,
                                    std::shared_ptr<const ScatteringTables> scattering);
 
-/// The light transport of single scattering alone, with the scene's output, by the integrator
-/// volume, in another medium than the scene's, of the same constituents and phase functions, which
-/// outlives the result; and with light weighted by its path.
-LightTransport make_single_scattering(const AssembledScene& scene, const DeepShadows& deep_shadows,
-                                      const Medium& medium, const PathWeight& path_weight);
-
 /// The optical depth, in the clearest band, that the light of the nearest lamp passes to where
 /// light paths from the camera begin: the camera, or a surface in view that the lamp lights. With
 /// columns of the volumes. None without lamps.

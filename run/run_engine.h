@@ -125,6 +125,13 @@ class RunEngine {
     /// fit into memory; IoError, of the image before as well; Interrupted.
     void run(const Job& job, RunClient& client, const std::string& noun = "image");
 
+    /// Lends the renderer, between runs, to what is no run of images; `client` is told how far its
+    /// stages are. Throws what `work` throws.
+    void lend(RunClient& client, const std::function<void(Renderer& renderer)>& work) {
+        client_ = &client;
+        work(renderer_);
+    }
+
     /// For the hooks: what the image is rendered by.
     Renderer& renderer() { return renderer_; }
     /// For the hooks: how far the run is. An image counts once its writing has begun.

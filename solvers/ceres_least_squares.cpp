@@ -221,6 +221,7 @@ void solve(ResidualFunction& residual_function, LeastSquaresProblem& problem,
     options.linear_solver_ordering = ordering;
     options.max_num_iterations = problem.most_iterations;
     options.max_num_consecutive_invalid_steps = 20;
+    options.use_nonmonotonic_steps = problem.is_rough;
     options.function_tolerance = problem.tolerance;
     options.parameter_tolerance = 1e-10;
     options.num_threads = problem.threads;

@@ -20,9 +20,11 @@
 #include "core/base/text.h"
 #include "edit/document/scene_text.h"
 #include "fit/board_corners.h"
+#include "fit/picture_poses.h"
 #include "fit/picture_residuals.h"
 #include "fit/point_residuals.h"
 #include "fit/robust_fit.h"
+#include "fit/target_sheet.h"
 #include "fit/unknowns.h"
 
 namespace uw {
@@ -37,6 +39,7 @@ const char* const k_fit_examples = R"(Examples:
         --unknown camera.port.distance,camera.port.normal
   uwvdb fit dive.yaml --images 'dive/%04d.png' -o fitted.yaml \
         --unknown water.absorption,water.scattering.b,lamps.*.intensity
+  uwvdb fit --target board.pdf --paper a3
 
 Finds numbers of a scene, each with its standard error, by robust least squares, and says what the
 observations cannot tell. CORNERS.csv has the columns image, x, y, z, u, v and perhaps medium: the
@@ -45,7 +48,7 @@ the image shows them [pixels; the image's corner is (0, 0)], in water, in air be
 or bare, without a port. Poses are found with the rest. With --board OpenCV finds the corners of a
 checkerboard in photographs. Without, pictures are held against the images of the
 scene, frame by frame, cell by cell: raw numbers if its camera has a sensor, else light (OpenEXR) or
-what sRGB makes of it (PNG, JPEG).
+what sRGB makes of it (PNG, JPEG). --target writes a sheet with a board to print, and needs no scene.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted.)";
 
@@ -70,7 +73,8 @@ Assumption read_assumption(const std::string& option, const std::string& text,
 }
 
 struct FitArguments {
-    std::filesystem::path scene, points, images, corners, output, page, csv;
+    std::filesystem::path scene, points, images, poses, corners, output, page, csv, target;
+    std::optional<Paper> paper;
     std::optional<BoardDesc> board;
     std::vector<std::string> overrides, unknowns;
     std::vector<Assumption> priors, bounds;
@@ -83,11 +87,13 @@ struct FitArguments {
 
 Options fit_options(FitArguments& a) {
     Options options;
-    options.path("SCENE", "", a.scene, "scene file, with values from where to begin").required =
-        true;
+    options.path("SCENE", "", a.scene, "scene file, with values from where to begin");
     options.path("--points", "CORNERS.csv", a.points, "points, and where images show them");
     options.path("--images", "PICTURE", a.images,
                  "photographs of the scene; %04d is the frame's number");
+    options.path("--poses", "MODEL", a.poses,
+                 "a COLMAP model or transforms.json with the camera's poses, by the pictures' "
+                 "names; --images may then be their folder");
     options.parsed(
         "--board", "COLUMNSxROWSxSIDE",
         [&a](const std::string& text) { a.board = read_board(text); },
@@ -106,8 +112,8 @@ Options fit_options(FitArguments& a) {
                 begin = end + 1;
             }
         },
-        "what to find: paths as of --set; * stands for every entry");
-    unknown.required = true;
+        "what to find: paths as of --set; * stands for every entry; exposure and response of "
+        "pictures");
     unknown.repeatable = true;
     options
         .parsed(
@@ -145,6 +151,13 @@ Options fit_options(FitArguments& a) {
                  "write the scene with what was found, all else as it is");
     options.path("--report", "PAGE.html", a.page, "write a page with tables and plots");
     options.path("--csv", "FILE", a.csv, "write all residuals as a table");
+    options.path("--target", "SHEET.pdf", a.target,
+                 "write a sheet to print, with a checkerboard, and end");
+    Option& paper = options.parsed(
+        "--paper", "SIZE", [&a](const std::string& text) { a.paper = read_paper(text); },
+        "paper of --target: a4 (as it is if omitted), a3 or letter");
+    paper.value = Option::Value::word;
+    paper.words = {"a4", "a3", "letter"};
     options.flag("--json", a.json, "print everything as JSON instead of a table");
     options.threads(a.threads);
     options.messages(a.quiet, a.progress);
@@ -173,6 +186,21 @@ std::vector<Prior> priors_of(const FitArguments& a, const SceneUnknowns& unknown
     return priors;
 }
 
+/// Lets unknown exposures begin where the pictures are as bright as the scene.
+void begin_exposures(SceneUnknowns& unknowns, PictureResiduals& pictures) {
+    std::vector<double> start;
+    bool has_exposures = false;
+    for (const SceneUnknown& unknown : unknowns.all()) {
+        start.push_back(unknown.start);
+        has_exposures = has_exposures || unknown.of == SceneUnknown::Of::exposure;
+    }
+    if (!has_exposures) return;
+    const std::vector<double> exposures = pictures.exposures_at(start);
+    for (std::size_t i = 0; i < unknowns.size(); ++i)
+        if (unknowns.all()[i].of == SceneUnknown::Of::exposure)
+            unknowns.begin_at(i, exposures[unknowns.all()[i].picture]);
+}
+
 /// The scene's text with what was found, and all else as it was.
 std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
                         const FitResult& result) {
@@ -185,14 +213,45 @@ std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
     return text.text();
 }
 
+void write_target(const FitArguments& a) {
+    if (!a.scene.empty())
+        throw UsageError(
+            "--target: writes a sheet to print, and fits nothing; leave the scene out");
+    const Paper paper = a.paper ? *a.paper : read_paper("a4");
+    TextFiles files;
+    files.add(a.target, target_pdf(a.board ? *a.board : board_for(paper), paper));
+    files.commit(a.quiet);
+}
+
 void run_fit(const FitArguments& a) {
+    if (a.scene.empty())
+        throw UsageError(
+            "fit: give the scene, as in 'uwvdb fit SCENE.yaml'; see 'uwvdb fit --help'");
+    if (a.unknowns.empty())
+        throw UsageError(
+            "--unknown: give what to find, such as camera.port.distance; see 'uwvdb fit --help'");
+    if (a.paper) throw UsageError("--paper: is that of a sheet to print; give --target SHEET.pdf");
     if (a.points.empty() == a.images.empty())
         throw UsageError("give either --points, a table of corners, or --images, photographs");
     if (a.board && a.images.empty())
         throw UsageError("--board: is looked for in --images; give these instead of --points");
     if (!a.corners.empty() && !a.board)
         throw UsageError("--corners: are those of a board; give its --board, such as 9x6x0.03");
-    const SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns);
+    if (!a.poses.empty() && (a.board || a.images.empty()))
+        throw UsageError(
+            "--poses: are those of --images without --board; of corners poses are found");
+    const auto warn = [](const std::string& line) {
+        print_message(fmt::format("warning: {}\n", line));
+    };
+    std::vector<ObservedPicture> seen_pictures;
+    std::vector<std::string> names;
+    if (!a.images.empty())
+        seen_pictures =
+            a.poses.empty() ? pictures_called(a.images) : posed_pictures(a.images, a.poses, warn);
+    if (!a.board)
+        for (const ObservedPicture& picture : seen_pictures)
+            names.push_back(picture.file.filename().string());
+    SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns, names);
     FitOptions options;
     options.priors = priors_of(a, unknowns);
     options.starts = a.starts;
@@ -205,16 +264,13 @@ void run_fit(const FitArguments& a) {
             unknowns, read_seen_points(read_csv_file(a.points, "--points")));
     } else if (a.board) {
         std::vector<std::filesystem::path> pictures_of_it;
-        for (const ObservedPicture& picture : pictures_called(a.images))
-            pictures_of_it.push_back(picture.file);
-        PointTable corners = find_board_corners(
-            pictures_of_it, *a.board,
-            [](const std::string& line) { print_message(fmt::format("warning: {}\n", line)); });
+        for (const ObservedPicture& picture : seen_pictures) pictures_of_it.push_back(picture.file);
+        PointTable corners = find_board_corners(pictures_of_it, *a.board, warn);
         if (!a.corners.empty()) files.add(a.corners, point_csv(corners));
         observations = std::make_unique<PointResiduals>(unknowns, std::move(corners));
     } else {
-        auto seen =
-            std::make_unique<PictureResiduals>(unknowns, pictures_called(a.images), a.cells);
+        auto seen = std::make_unique<PictureResiduals>(unknowns, std::move(seen_pictures), a.cells);
+        begin_exposures(unknowns, *seen);
         pictures = seen.get();
         observations = std::move(seen);
     }
@@ -244,7 +300,10 @@ Command fit_command() {
     return {"fit", "find numbers of a scene from what photographs show", k_fit_examples,
             fit_options(*arguments), [arguments] {
                 install_stop_signal();
-                run_fit(*arguments);
+                if (arguments->target.empty())
+                    run_fit(*arguments);
+                else
+                    write_target(*arguments);
                 return k_exit_done;
             }};
 }

@@ -174,6 +174,7 @@ std::string FitReport::printed(bool as_json) const {
                 {"rms_with_outliers", observations_.of_group(result_.rms_with_outliers)},
                 {"rms_at_start", observations_.of_group(result_.rms_at_start)},
                 {"deviation", result_.deviation},
+                {"clustering", result_.clustering},
                 {"converged", result_.converged},
                 {"iterations", result_.iterations},
                 {"observations", result_.outliers.size()},
@@ -325,8 +326,12 @@ std::string FitReport::page(const std::string& scene) const {
     std::string html = fmt::format("<p>{}.</p>\n", xml_escaped(summary_line()));
     html += "<h2>What was found</h2>\n" + table(value_rows(result_));
     html += fmt::format(
-        "<p>Errors are standard errors, from how the residuals spread ({:.3g} {}).</p>\n",
-        result_.deviation, observations_.unit());
+        "<p>Errors are standard errors, from how the residuals spread ({:.3g} {}){}.</p>\n",
+        result_.deviation, observations_.unit(),
+        result_.clustering > 1
+            ? fmt::format(", {:.3g} times as large as if neighbours were independent",
+                          std::sqrt(result_.clustering))
+            : "");
     const std::vector<std::string> all_doubts = doubts(result_);
     html += "<h2>What these observations cannot tell</h2>\n";
     if (all_doubts.empty()) html += "<p>Each unknown is determined by itself.</p>\n";

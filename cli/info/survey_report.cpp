@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <variant>
 
 #include "cli/grid_summary.h"
 #include "cli/image_choice.h"
 #include "core/base/json.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
+#include "core/geometry/waves.h"
 #include "core/light/integrator_table.h"
 
 namespace uw {
@@ -67,6 +70,28 @@ Report report_on_water(const AssembledScene& scene) {
         report.add("by_depth", by_depth);
     }
     report.set({{"depths_m", std::move(depths)}, {"c_at_depths", std::move(attenuation)}});
+    return report;
+}
+
+Report report_on_surface(const AssembledScene& scene) {
+    Report report("the water's surface");
+    const WaterSurface& surface = *scene.water_surface;
+    Json waves = nullptr;
+    if (surface.has_waves()) {
+        const WaveStatistics all = surface.waves()->statistics();
+        report.say(
+            fmt::format("waves with a significant height of {:.3g} m, mean square slope "
+                        "{:.3g}",
+                        all.significant_height(), all.slopes.total()));
+        if (const auto* sea =
+                std::get_if<WaveSpectrumDesc>(&scene.desc().water.surface->waves->shape))
+            report.say(compare_with_cox_munk(*sea, *surface.waves()));
+        waves = {{"significant_height", all.significant_height()},
+                 {"mean_square_slope", all.slopes.total()}};
+    } else {
+        report.say("calm");
+    }
+    report.set({{"n", surface.n()}, {"waves", std::move(waves)}});
     return report;
 }
 
@@ -286,6 +311,7 @@ Report report_on_scene(const SceneSurvey& survey) {
     for (const GridSurvey& grid : survey.grids) grids.push_back(report_on_grid(grid, medium));
     report.add("sequences", sequences);
     report.add("water", report_on_water(scene));
+    if (scene.water_surface) report.add("surface", report_on_surface(scene));
     report.add("camera", report_on_camera(survey));
     report.add("lamps", lamps, lamps.empty() ? "no lamps" : "lamps");
     report.add("geometry", report_on_geometry(scene));

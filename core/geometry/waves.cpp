@@ -772,11 +772,10 @@ std::string compare_with_cox_munk(const WaveSpectrumDesc& desc, const WaterWaves
                                  : "the spectrum's tail has more of short ones than a clean sea: a "
                                    "lower resolution leaves them out";
     return fmt::format(
-        "the waves' mean square slope is {:.4f}, {:.0f} % of the {:.4f} of Cox and Munk at this "
-        "wind "
-        "({:.1f} m/s at 12.5 m); they have wavelengths of {:.3g} to {:.3g} m, and {}",
-        resolved, 100 * resolved / measured, measured, wind, 2 * desc.tile / desc.resolution,
-        desc.tile, rest);
+        "these slopes are {:.0f} % of the {:.3g} of Cox and Munk at this wind ({:.1f} m/s at 12.5 "
+        "m); the waves have lengths of {:.3g} to {:.3g} m, and {}",
+        100 * resolved / measured, measured, wind, 2 * desc.tile / desc.resolution, desc.tile,
+        rest);
 }
 
 }  // namespace uw

@@ -13,25 +13,6 @@
 
 namespace uw {
 
-/// By what light is weighted on its way from a lamp, or from a surface that glows, to the camera:
-/// by nothing, by the length of its path in the water [m], or by that path's column of one
-/// constituent [unit m]. The derivative of e^-tau is minus e^-tau, weighted: so that of an image by
-/// an attenuation coefficient is minus the image of light weighted by what the coefficient
-/// multiplies.
-struct PathWeight {
-    enum class Kind : std::uint8_t { none, length, column };
-
-    Kind kind = Kind::none;
-    std::size_t constituent = 0;  // of `column`
-
-    explicit operator bool() const { return kind != Kind::none; }
-    /// The weight of a path with this length and these columns, one per constituent.
-    double of(double length, std::span<const double> columns) const {
-        if (kind == Kind::none) return 1;
-        return kind == Kind::length ? length : columns[constituent];
-    }
-};
-
 struct LampSurface;
 struct SceneGlow;
 class WaterSurface;
@@ -44,8 +25,6 @@ struct LitScene {
     /// The points that emit light, in the order of the scene's lamps: one for each lamp, several
     /// for a lamp with an extent (Lamp::index).
     const std::vector<Lamp>* emitters = nullptr;
-    /// For derivatives, of integrators that have them (VolumeIntegrator).
-    PathWeight path_weight{};
     /// The luminous surfaces of lamps with an extent; null if there are none.
     const std::vector<LampSurface>* lamp_surfaces = nullptr;
     /// The volumes that give off light; null if there are none.

@@ -26,8 +26,6 @@ struct LightTransport {
     /// Random paths: of all light (IntegratorKind::traces_paths), or of what the other two leave
     /// out (AllLightPass). Null unless a pass needs them.
     std::shared_ptr<const PathTracer> paths{};
-    /// By what all of this light is weighted, for lamps in view too.
-    PathWeight path_weight{};
 
     /// Replaces the integrator, and its parts with it.
     void replace_integrator(std::unique_ptr<const Integrator> by) {

@@ -74,9 +74,11 @@ Lamp Lamp::mirrored(const WaterSurface& surface) const {
 }
 
 Lamp Lamp::focused(std::shared_ptr<const SunFocus> focus) const {
+    const double calm = sunlight_->slope(sunlight_->surface.normal);
     Lamp sun = *this;
+    sun.sunlight_->direction = focus->direction();
     sun.focus_ = std::move(focus);
-    return sun;
+    return sun.brightened(sun.sunlight_->slope(sun.sunlight_->surface.normal) / calm);
 }
 
 double Lamp::focus(const Point3& x) const {

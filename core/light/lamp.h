@@ -109,7 +109,8 @@ class Lamp {
     std::size_t index() const { return index_; }
     /// The share of that lamp's light that comes from here.
     double share() const { return share_; }
-    /// The same sun, focused by waves.
+    /// The same sun, focused by waves: in their light's mean direction, with the same irradiance on
+    /// a level plane.
     Lamp focused(std::shared_ptr<const SunFocus> focus) const;
     bool is_focused() const { return focus_ != nullptr; }
     /// By what its light at `x` is multiplied where waves focus it (SunFocus); else 1.

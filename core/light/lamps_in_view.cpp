@@ -238,8 +238,7 @@ void LampsInView::append_volume(const SceneGlow& glow, const Ray& ray, double re
                                          glow.volume->emission.of(first + t * (last - first));
                 columns->find(s, column);
                 lamp.radiance += emitted;
-                lamp.arriving +=
-                    weight_.of(s, column) * (attenuation_.transmittance(s, column) * emitted);
+                lamp.arriving += attenuation_.transmittance(s, column) * emitted;
                 double sum = 0;
                 for (const double band : emitted) sum += band;
                 lamp.distance += sum * s;
@@ -267,8 +266,7 @@ void LampsInView::append(const Ray& ray, double reach, std::vector<SeenLamp>& se
         lamp.lamp = surface.lamp.index();
         lamp.distance = distance;
         lamp.radiance = radiance * surface.lamp.axis_intensity();
-        lamp.arriving = weight_.of(distance, column) *
-                        (attenuation_.transmittance(distance, column) * lamp.radiance);
+        lamp.arriving = (attenuation_.transmittance(distance, column) * lamp.radiance);
     }
 }
 

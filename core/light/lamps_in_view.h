@@ -89,7 +89,7 @@ struct SeenLamp {
     std::size_t lamp = 0;    // its index in the scene
     double distance = 0;     // along the ray, of a volume's light in the mean [m]
     Spectrum radiance;       // before the water dims it [W m^-2 sr^-1]
-    Spectrum arriving;       // what of that arrives at the ray's origin, times its PathWeight
+    Spectrum arriving;       // what of that arrives at the ray's origin
     bool is_volume = false;  // not a surface
 };
 
@@ -99,8 +99,7 @@ struct SeenLamp {
 class LampsInView {
   public:
     /// `scene` must outlive this object.
-    LampsInView(const LitScene& scene, const PathWeight& weight)
-        : scene_(scene), weight_(weight), attenuation_(*scene.medium) {}
+    explicit LampsInView(const LitScene& scene) : scene_(scene), attenuation_(*scene.medium) {}
 
     /// Appends the lamps that `ray` crosses up to the surface at `reach` [m]; one that lies on that
     /// surface is before it.
@@ -111,7 +110,6 @@ class LampsInView {
                        std::vector<SeenLamp>& seen) const;
 
     LitScene scene_;
-    PathWeight weight_;
     AttenuationTable attenuation_;
 };
 

@@ -178,6 +178,17 @@ struct ConcentrationProfile {
     void integrate();
 };
 
+/// Gathers the derivatives of some number by the values of a field's voxels, from those by what the
+/// field says of points and ways: the transpose of ConcentrationField. For one thread.
+class FieldGradient {
+  public:
+    virtual ~FieldGradient() = default;
+    /// The number changes by weights[k] per unit of constituent k at `x`.
+    virtual void add_sample(const Point3& x, std::span<const double> weights) = 0;
+    /// And by weights[k] per unit of its column from `a` to `b`.
+    virtual void add_column(const Point3& a, const Point3& b, std::span<const double> weights) = 0;
+};
+
 /// Spatially varying concentrations of the medium's constituents, on top of the uniform water.
 /// Thread safe.
 class ConcentrationField {

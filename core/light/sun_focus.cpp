@@ -22,9 +22,32 @@ constexpr int k_beams_of_texel = 3;  // along each side
 /// shift by some metres, and half of the memory that each depth's sum reads.
 struct Beam {
     float u = 0, v = 0;              // of its place at depth 0, less the grid's [texels]
-    float slope_u = 0, slope_v = 0;  // per metre of depth, less those of calm water [texels/m]
+    float slope_u = 0, slope_v = 0;  // per metre of depth, less the mean ones [texels/m]
     float flux = 0;                  // relative to what calm water lets through
 };
+
+/// Slopes of beams, summed by flux.
+struct SlopeSum {
+    double u = 0, v = 0, flux = 0;
+
+    void add(double slope_u, double slope_v, double beam_flux) {
+        u += beam_flux * slope_u;
+        v += beam_flux * slope_v;
+        flux += beam_flux;
+    }
+};
+
+/// Down the mean slope of all rows, in the surface's coordinates, unit; `calm` if there is no
+/// light.
+Vector3 mean_direction(const std::vector<SlopeSum>& rows, const Vector3& calm) {
+    SlopeSum all;
+    for (const SlopeSum& row : rows) {
+        all.u += row.u;
+        all.v += row.v;
+        all.flux += row.flux;
+    }
+    return all.flux > 0 ? glm::normalize(Vector3{all.u / all.flux, all.v / all.flux, -1}) : calm;
+}
 
 /// A column or line of a map that repeats after `count` of them.
 int wrapped(int i, int count) {
@@ -62,9 +85,6 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
     : surface_(surface), extent_(extent), resolution_(resolution) {
     const WaterWaves& waves = *surface.waves();
     const Vector3 in_air = surface.in_plane(direction);
-    const Vector3 calm = surface.in_plane(surface.into_water(direction));
-    shift_u_ = -calm.x / calm.z;
-    shift_v_ = -calm.y / calm.z;
     const double calm_flux = -in_air.z * (1 - surface.reflectance_from_air(-in_air.z));
     const int beams_across = resolution * k_beams_of_texel;
     const double step = extent.side / beams_across, texels = resolution / extent.side;
@@ -73,7 +93,8 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
     };
     Grid2D<Beam> beams;
     beams.assign(beams_across, beams_across);
-    parallel_for(static_cast<std::size_t>(beams_across), [&](std::size_t row) {
+    std::vector<SlopeSum> rows(static_cast<std::size_t>(beams_across));
+    parallel_for(rows.size(), [&](std::size_t row) {
         throw_if_stopped();
         for (int i = 0; i < beams_across; ++i) {
             const WavePoint wave =
@@ -88,13 +109,20 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
             // The light enters at the wave's height, from where it goes down to depth 0.
             beam.u = static_cast<float>(texels * wave.height * slope_u);
             beam.v = static_cast<float>(texels * wave.height * slope_v);
-            beam.slope_u = static_cast<float>(texels * (slope_u - shift_u_));
-            beam.slope_v = static_cast<float>(texels * (slope_v - shift_v_));
+            beam.slope_u = static_cast<float>(texels * slope_u);
+            beam.slope_v = static_cast<float>(texels * slope_v);
             beam.flux = static_cast<float>(towards / normal.z *
                                            (1 - surface.reflectance_from_air(towards)) /
                                            (calm_flux * k_beams_of_texel * k_beams_of_texel));
+            rows[row].add(slope_u, slope_v, static_cast<double>(beam.flux));
         }
     });
+    const Vector3 mean = mean_direction(rows, surface.in_plane(surface.into_water(direction)));
+    direction_ = mean.x * surface.across() + mean.y * surface.along() + mean.z * surface.up();
+    shift_u_ = -mean.x / mean.z;
+    shift_v_ = -mean.y / mean.z;
+    const auto mean_u = static_cast<float>(texels * shift_u_),
+               mean_v = static_cast<float>(texels * shift_v_);
     slices_.resize(k_slices + 1);
     const double radius = 0.5 * angle / surface.n();  // of the disc in the water, near the zenith
     parallel_for(slices_.size(), [&](std::size_t k) {
@@ -109,8 +137,8 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
         for (int j = 0; j < beams_across; ++j) {
             for (int i = 0; i < beams_across; ++i) {
                 const Beam& beam = beams(i, j);
-                const SplineWeights across = place_in(i, beam.u, beam.slope_u);
-                const SplineWeights down = place_in(j, beam.v, beam.slope_v);
+                const SplineWeights across = place_in(i, beam.u, beam.slope_u - mean_u);
+                const SplineWeights down = place_in(j, beam.v, beam.slope_v - mean_v);
                 for (std::size_t l = 0; l < 3; ++l) {
                     const std::span<float> line = slice.row(down.texels[l]);
                     const float flux = beam.flux * down.weights[l];

@@ -15,8 +15,8 @@ namespace uw {
 /// A regular grid of beams meets the waves, nine for each texel, and is refracted by them. Where
 /// each crosses a level plane its flux is shared out among the nine texels around, and so at a
 /// series of depths, which lie closer near the surface. Between depths the factor is linear along
-/// the light of calm water. What beams differ in direction, by a few degrees, moves light to where
-/// it goes, but counts neither for scattering angles nor for lengths.
+/// the beams' mean direction. What they differ from it, by a few degrees, moves light to where it
+/// goes, but counts neither for scattering angles nor for lengths.
 class SunFocus {
   public:
     /// What of the water the map holds.
@@ -34,6 +34,9 @@ class SunFocus {
     SunFocus(const WaterSurface& surface, const Vector3& direction, double angle,
              const Extent& extent, int resolution);
 
+    /// In which the beams travel in the water in the mean by flux, world, unit: flatter than below
+    /// calm water where the sun is low, since slopes that face it catch more and turn it less.
+    const Vector3& direction() const { return direction_; }
     /// The factor at a point in the world, >= 0; 1 above the water.
     double at(const Point3& x) const;
     /// Side of a texel [m].
@@ -48,7 +51,8 @@ class SunFocus {
     WaterSurface surface_;
     Extent extent_;
     int resolution_;
-    double shift_u_ = 0, shift_v_ = 0;  // of calm water's light per metre of depth
+    Vector3 direction_{};
+    double shift_u_ = 0, shift_v_ = 0;  // of light with this direction per metre of depth
     std::vector<Grid2D<float>> slices_;
 };
 

@@ -383,11 +383,8 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     };
     columns.begin(scene_, attenuation_, {&deep_shadows_, column_tolerance_}, samples);
     columns.take_camera();
-    const PathWeight& weight = scene_.path_weight;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
+    for (std::size_t i = 0; i < samples.size(); ++i)
         set_depths(i, samples[i]->hit.distance, light.to_camera(i));
-        if (weight) light.camera_weights().push_back(weight.of(samples[i]->hit.distance, column));
-    }
     find_half_shades(scene_, samples, light.visible_shares());
     for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
         const Lamp& lamp = (*scene_.emitters)[j];
@@ -401,9 +398,6 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
             if (share == 0) continue;
             light.geometry_term(i, j) = share * facing.geometry_terms[n];
             set_depths(i, facing.radii[n], light.from_emitter(i, j));
-            if (weight)
-                light.geometry_term(i, j) *=
-                    light.glow_weight(i) + weight.of(facing.radii[n], column);
         }
     }
     exp_of_minus(light.transmittances());

@@ -28,7 +28,6 @@ class SurfaceLight {
         geometry_terms_.assign(samples * emitters.size(), 0.0);
         transmittances_.assign(samples * (1 + emitters.size()) * bands, 0.0);
         visible_shares_.assign(samples * emitters.size(), 0.0);
-        camera_weights_.clear();
     }
 
     const std::vector<Lamp>& emitters() const { return *emitters_; }
@@ -52,11 +51,6 @@ class SurfaceLight {
     /// e^-tau per band from the sample to its ray's origin.
     std::span<const double> to_camera(std::size_t sample) const { return row(sample, 0); }
 
-    /// By what the sample's own glow is weighted (PathWeight).
-    double glow_weight(std::size_t sample) const {
-        return camera_weights_.empty() ? 1 : camera_weights_[sample];
-    }
-
     // For SurfaceLighting, which fills in the values:
 
     /// Irradiance without water for 1 W/sr on the emitter's axis [1/m^2]: relative intensity times
@@ -76,8 +70,6 @@ class SurfaceLight {
     std::span<const double> from_emitter(std::size_t sample, std::size_t emitter) const {
         return row(sample, 1 + emitter);
     }
-    /// Empty, or the weight of every sample's path to the camera.
-    std::vector<double>& camera_weights() { return camera_weights_; }
     /// Every visible_share: [sample * emitter_count() + emitter].
     std::span<double> visible_shares() { return visible_shares_; }
     double& visible_share(std::size_t sample, std::size_t emitter) {
@@ -101,7 +93,6 @@ class SurfaceLight {
     std::size_t bands_ = 0;
     std::vector<double> geometry_terms_;  // [sample][emitter]
     std::vector<double> visible_shares_;  // likewise
-    std::vector<double> camera_weights_;
     std::vector<double> transmittances_;  // [sample][to the camera, then from each emitter][band]
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "core/base/error.h"
@@ -37,13 +38,6 @@ void ScatterNodes::look_up(const ConcentrationProfile& profile) {
                                      t * length * (begin + 0.5 * t * slope);
         }
     }
-}
-
-void ScatterNodes::weigh(const PathWeight& path_weight) {
-    const double* const columns = path_weight.kind == PathWeight::Kind::column
-                                      ? column.data() + path_weight.constituent * size()
-                                      : nullptr;
-    for (std::size_t i = 0; i < size(); ++i) weight[i] *= columns ? columns[i] : s[i] + radius[i];
 }
 
 void ScatterNodes::evaluate_phases(const PhaseTable& table, std::size_t phases) {
@@ -281,25 +275,7 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
     std::optional<std::size_t> lamp;  // of which evenness is known
     for (const std::size_t j : emitters_) {
         throw_if_stopped();
-        const LampPassage passage(ray, emitters[j]);
-        double reach = distances.back();
-        if (smallest_attenuation_ > 0)
-            reach =
-                std::min(reach, passage.reach(k_negligible_optical_depth / smallest_attenuation_));
-        deep_shadows_[j]->lit_intervals(ray, emitters[j].beam(ray, {begin, reach}), w.lit);
-        w.nodes.clear();
-        for (const Interval& interval : w.lit) {
-            const std::vector<double>& breaks =
-                find_breaks(ray, j, passage, interval, distances, w);
-            add_panels(ray, j, passage, distances, breaks, w.profile, w.nodes);
-        }
-        w.nodes.lamp_column.resize(w.nodes.size() *
-                                   static_cast<std::size_t>(w.profile.constituent_count));
-        deep_shadows_[j]->columns(w.nodes.position, w.nodes.lamp_column);
-        refine_columns(j, w.nodes, w.profile.constituent_count);
-        w.nodes.look_up(w.profile);
-        if (scene_.path_weight) w.nodes.weigh(scene_.path_weight);
-        w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
+        find_nodes(ray, j, begin, distances, w);
         w.radiance.assign(distances.size(), Spectrum{});
         sum_.add(w.nodes, emitters[j].axis_intensity(), w.radiance);
         if (lamp != emitters[j].index()) {
@@ -312,6 +288,59 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
             result.at(i, emitters[j].index()) += so_far;
         }
     }
+}
+
+void VolumeIntegrator::visit_nodes(const Ray& ray, std::span<const double> distances,
+                                   const std::function<void(const Node&)>& visit) const {
+    thread_local Workspace w;
+    thread_local std::vector<Spectrum> radiance;
+    thread_local std::vector<std::size_t> distance_of_node;
+    thread_local std::vector<double> columns, concentration;
+    const std::vector<Lamp>& emitters = *scene_.emitters;
+    scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);
+    const auto constituents = static_cast<std::size_t>(w.profile.constituent_count);
+    columns.resize(constituents);
+    concentration.resize(constituents);
+    for (const std::size_t j : emitters_) {
+        throw_if_stopped();
+        find_nodes(ray, j, 0, distances, w);
+        evenness_.find(emitters[j].index(), ray, 0, distances, w.evenness);
+        // Summed node by node.
+        distance_of_node = w.nodes.distance;
+        std::iota(w.nodes.distance.begin(), w.nodes.distance.end(), std::size_t{0});
+        radiance.assign(w.nodes.size(), Spectrum{});
+        sum_.add(w.nodes, emitters[j].axis_intensity(), radiance);
+        for (std::size_t i = 0; i < radiance.size(); ++i) {
+            for (std::size_t k = 0; k < constituents; ++k) {
+                columns[k] = w.nodes.column[k * radiance.size() + i];
+                concentration[k] = w.nodes.concentration[k * radiance.size() + i];
+            }
+            radiance[i] *= w.evenness[distance_of_node[i]];
+            visit({j, w.nodes.s[i], distance_of_node[i], radiance[i], columns, concentration});
+        }
+    }
+}
+
+void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double begin,
+                                  std::span<const double> distances, Workspace& w) const {
+    const Lamp& lamp = (*scene_.emitters)[emitter];
+    const LampPassage passage(ray, lamp);
+    double reach = distances.back();
+    if (smallest_attenuation_ > 0)
+        reach = std::min(reach, passage.reach(k_negligible_optical_depth / smallest_attenuation_));
+    deep_shadows_[emitter]->lit_intervals(ray, lamp.beam(ray, {begin, reach}), w.lit);
+    w.nodes.clear();
+    for (const Interval& interval : w.lit) {
+        const std::vector<double>& breaks =
+            find_breaks(ray, emitter, passage, interval, distances, w);
+        add_panels(ray, emitter, passage, distances, breaks, w.profile, w.nodes);
+    }
+    w.nodes.lamp_column.resize(w.nodes.size() *
+                               static_cast<std::size_t>(w.profile.constituent_count));
+    deep_shadows_[emitter]->columns(w.nodes.position, w.nodes.lamp_column);
+    refine_columns(emitter, w.nodes, w.profile.constituent_count);
+    w.nodes.look_up(w.profile);
+    w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
 }
 
 // Seen towards the lamp, all of its light comes the same way, so that errors of interpolation do

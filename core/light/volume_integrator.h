@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -30,9 +31,6 @@ struct ScatterNodes {
     void clear();
     /// Fills column and concentration from the ray's profile and lamp_column.
     void look_up(const ConcentrationProfile& profile);
-    /// Multiplies every node's weight by that of its path, from lamp to node to the ray's origin.
-    /// After look_up.
-    void weigh(const PathWeight& path_weight);
     /// Fills phase from half_tangent; `phases` is the number of phase functions in the table.
     void evaluate_phases(const PhaseTable& table, std::size_t phases);
 };
@@ -102,9 +100,26 @@ class VolumeIntegrator final : public Integrator {
     void in_scatter_from(const Ray& ray, double begin, std::span<const double> distances,
                          InScatter& result) const override;
 
+    /// One of the places whose light in_scatter sums up.
+    struct Node {
+        std::size_t emitter;       // that lights it
+        double s;                  // along the ray [m]
+        std::size_t distance;      // index of the first of the distances beyond it
+        const Spectrum& radiance;  // that it adds [W m^-2 sr^-1]
+        // By constituent: what its light passes on its way from the emitter to the ray's origin
+        // [unit m], and what is at the node [unit].
+        std::span<const double> columns, concentration;
+    };
+    /// The same as in_scatter node by node.
+    void visit_nodes(const Ray& ray, std::span<const double> distances,
+                     const std::function<void(const Node&)>& visit) const;
+
   private:
     struct Workspace;
 
+    // The nodes of an emitter's light beyond `begin`, with all but their radiance.
+    void find_nodes(const Ray& ray, std::size_t emitter, double begin,
+                    std::span<const double> distances, Workspace& w) const;
     // Where panels begin and end within a lit interval of lamp `lamp`, ascending.
     const std::vector<double>& find_breaks(const Ray& ray, std::size_t lamp,
                                            const LampPassage& passage, const Interval& interval,

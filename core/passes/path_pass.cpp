@@ -13,6 +13,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
 #include "core/light/integrator_table.h"
+#include "core/passes/pixel_terms.h"
 #include "core/paths/path_tracer.h"
 #include "core/scene/render_desc.h"
 
@@ -82,7 +83,8 @@ struct PathPixels::Batch {
 /// Adds up terms, in the pixel and for the batch.
 class PathPixels::Sum final : public PathTerms {
   public:
-    Sum(PixelResult& pixel, std::size_t bands) : pixel_(pixel), bands_(bands) {}
+    Sum(PixelResult& pixel, std::size_t bands, PathTerms* follower = nullptr)
+        : pixel_(pixel), bands_(bands), follower_(follower) {}
 
     std::size_t bands() const { return bands_; }
     /// The part of the pixel's light that the next terms belong to.
@@ -96,7 +98,11 @@ class PathPixels::Sum final : public PathTerms {
     /// The sum of all terms since begin_batch.
     const Spectrum& batch() const { return batch_; }
 
+    int turn(int before, const PathTurn& turn) override {
+        return follower_ != nullptr ? follower_->turn(before, turn) : k_no_turn;
+    }
     void add(const PathTerm& term) override {
+        if (follower_ != nullptr) follower_->add(term);
         add_to(pixel_.*part_, term);
         add_to(batch_, term);
         if (part_ == &PixelResult::backscatter && term.distance >= first_slab_.begin &&
@@ -117,18 +123,19 @@ class PathPixels::Sum final : public PathTerms {
 
     PixelResult& pixel_;
     std::size_t bands_;
+    PathTerms* follower_;
     Spectrum PixelResult::*part_ = &PixelResult::direct;
     Interval first_slab_{};
     Spectrum batch_;
 };
 
 void PathPixels::render(int x, int y, const PathRound& round, const TracedCallback& traced,
-                        PixelResult& result) const {
+                        PixelResult& result, PathTerms* follower) const {
     thread_local PixelView view;
     render_the_rest(x, y, round, view, result);
     const auto bands = static_cast<std::size_t>(pixels_.band_count());
     const bool has_ray = view.ray.has_value();
-    Sum sum(result, bands);
+    Sum sum(result, bands, follower);
     std::array<Spectrum, PathRound::k_batches> means;
     std::array<int, PathRound::k_batches> sizes{};
     const int batches = round.batches();
@@ -245,7 +252,7 @@ void PathPixels::begin(const SurfaceSample* surface, const Ray& ray, const Surfa
     Spectrum leaving;
     if (surface != nullptr) {
         sum.set_part(&PixelResult::direct);
-        add_direct(*surface, light, in_light, sum, leaving);
+        add_direct_light(pixels_.scene(), *surface, light, in_light, sum, leaving);
     }
     pixels_.transport().paths->begin(ray, surface != nullptr ? &surface->hit : nullptr,
                                      leaving.first(sum.bands()), segment);
@@ -257,10 +264,13 @@ void PathPixels::add_lamps_in_view(const Ray& ray, double reach, Sum& sum) const
     lamps.clear();
     pixels_.lamps_in_view().append(ray, reach, lamps);
     sum.set_part(&PixelResult::direct);
+    const int turn = sum.turn(k_no_turn, {PathTurn::Kind::camera, ray.origin});
     for (const SeenLamp& lamp : lamps)
         sum.add({.lamp = lamp.lamp,
                  .distance = lamp.distance,
-                 .radiance = lamp.arriving.first(sum.bands())});
+                 .radiance = lamp.arriving.first(sum.bands()),
+                 .turn = turn,
+                 .place = ray.at(lamp.distance)});
 }
 
 void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
@@ -370,36 +380,6 @@ void PathPixels::share_out(int samples) {
     if (!(after > 0)) return;
     for (std::size_t k = 0; k < k_kinds.size(); ++k)
         times_.*k_kinds[k].count = worth[k] * before / after;
-}
-
-/// `leaving`: the radiance at the surface itself [W m^-2 sr^-1].
-void PathPixels::add_direct(const SurfaceSample& surface, const SurfaceLight& light,
-                            std::size_t in_light, Sum& sum, Spectrum& leaving) const {
-    const std::size_t bands = sum.bands();
-    const LitScene& scene = pixels_.scene();
-    const std::span<const double> to_camera = light.to_camera(in_light);
-    const SurfaceReflection reflection(*scene.surfaces, surface, pixels_.band_count());
-    Spectrum arriving, brdf;
-    PathTerm term{.distance = surface.hit.distance, .radiance = arriving.first(bands)};
-    if (reflection.emits()) {
-        for (std::size_t b = 0; b < bands; ++b) {
-            leaving[b] += reflection.emission()[b];
-            arriving[b] = reflection.emission()[b] * to_camera[b];
-        }
-        sum.add(term);
-    }
-    term.reflections = 1;
-    for (std::size_t j = 0; j < light.emitter_count(); ++j) {
-        if (!light.visible(in_light, j)) continue;
-        brdf_for(light.emitters()[j], reflection, surface, brdf);
-        for (std::size_t b = 0; b < bands; ++b) {
-            const double reflected = light.irradiance(in_light, j, b) * brdf[b];
-            leaving[b] += reflected;
-            arriving[b] = reflected * to_camera[b];
-        }
-        term.lamp = light.emitters()[j].index();
-        sum.add(term);
-    }
 }
 
 namespace {

@@ -53,8 +53,10 @@ class PathPixels {
 
     /// Renders pixel (x, y). The same for any number of threads, and for any part of the image. In
     /// rounds after the first, only what is a mean over paths. Thread safe. Throws Interrupted.
+    /// `follower`: is told of every turn and term as well, of lamps in view and of what surfaces
+    /// reflect of them, too; null: nobody is.
     void render(int x, int y, const PathRound& round, const TracedCallback& traced,
-                PixelResult& result) const;
+                PixelResult& result, PathTerms* follower = nullptr) const;
 
   private:
     class Sum;
@@ -70,8 +72,6 @@ class PathPixels {
     void add_lamps_in_view(const Ray& ray, double reach, Sum& sum) const;
     void trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
                     std::size_t in_light, const Batch& batch, int index, Sum& sum) const;
-    void add_direct(const SurfaceSample& surface, const SurfaceLight& light, std::size_t in_light,
-                    Sum& sum, Spectrum& leaving) const;
 
     const PixelRenderer& pixels_;
     std::size_t order_count_;

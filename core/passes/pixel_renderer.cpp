@@ -142,7 +142,7 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
       sensor_(sensor),
       in_scatter_(*transport.integrator, rays.world_from_camera(), slabs, lamp_count(),
                   band_count(), parts),
-      lamps_in_view_(scene, transport.path_weight),
+      lamps_in_view_(scene),
       matchers_(matchers),
       object_mattes_(matte_ids(scene.surfaces->names().objects)),
       material_mattes_(matte_ids(scene.surfaces->names().materials)),
@@ -387,7 +387,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
         for (std::size_t b = 0; b < bands; ++b) {
             const double emission = weight * reflection.emission()[b] * seen;
             result.clean[b] += emission;
-            result.direct[b] += emission * to_camera[b] * light.glow_weight(sample);
+            result.direct[b] += emission * to_camera[b];
         }
     }
     Spectrum brdf;

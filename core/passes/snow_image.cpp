@@ -239,7 +239,7 @@ double Footprint::count_samples(const std::array<double, 2>& at, const PixelWind
 
 namespace {
 
-constexpr int k_tile = 32;  // pixels along an edge
+constexpr int k_snow_tile = 32;  // pixels along an edge
 // Beside the bands of a pixel: the shares hidden of surfaces and of the water, the distance held.
 enum : std::size_t { k_covered, k_hidden, k_held, k_others };
 // A particle that covers this much of a pixel is what ground truth holds.
@@ -250,24 +250,25 @@ class TileLists {
   public:
     explicit TileLists(const PixelWindow& window)
         : window_(window),
-          columns_((window.width() + k_tile - 1) / k_tile),
-          lists_(static_cast<std::size_t>(columns_ * ((window.height() + k_tile - 1) / k_tile))) {}
+          columns_((window.width() + k_snow_tile - 1) / k_snow_tile),
+          lists_(static_cast<std::size_t>(columns_ *
+                                          ((window.height() + k_snow_tile - 1) / k_snow_tile))) {}
 
     void add(std::uint32_t index, const PixelWindow& bounds) {
         const PixelWindow inside = intersection(bounds, window_);
         if (inside.width() <= 0 || inside.height() <= 0) return;
-        for (int j = (inside.y0 - window_.y0) / k_tile; j <= (inside.y1 - 1 - window_.y0) / k_tile;
-             ++j)
-            for (int i = (inside.x0 - window_.x0) / k_tile;
-                 i <= (inside.x1 - 1 - window_.x0) / k_tile; ++i)
+        for (int j = (inside.y0 - window_.y0) / k_snow_tile;
+             j <= (inside.y1 - 1 - window_.y0) / k_snow_tile; ++j)
+            for (int i = (inside.x0 - window_.x0) / k_snow_tile;
+                 i <= (inside.x1 - 1 - window_.x0) / k_snow_tile; ++i)
                 lists_[static_cast<std::size_t>(j * columns_ + i)].push_back(index);
     }
     std::size_t count() const { return lists_.size(); }
     std::vector<std::uint32_t>& list(std::size_t tile) { return lists_[tile]; }
     PixelWindow window(std::size_t tile) const {
-        const int x0 = window_.x0 + static_cast<int>(tile) % columns_ * k_tile;
-        const int y0 = window_.y0 + static_cast<int>(tile) / columns_ * k_tile;
-        return intersection({x0, y0, x0 + k_tile, y0 + k_tile}, window_);
+        const int x0 = window_.x0 + static_cast<int>(tile) % columns_ * k_snow_tile;
+        const int y0 = window_.y0 + static_cast<int>(tile) / columns_ * k_snow_tile;
+        return intersection({x0, y0, x0 + k_snow_tile, y0 + k_snow_tile}, window_);
     }
 
   private:

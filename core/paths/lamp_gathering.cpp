@@ -310,11 +310,13 @@ struct GatheringWorkspace {
 }  // namespace
 
 LampGathering::LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
-                             std::vector<std::shared_ptr<const DeepShadow>> deep_shadows)
+                             std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
+                             std::vector<std::size_t> emitters)
     : optics_(optics),
       tables_(tables),
       evenness_(optics.scene()),
-      deep_shadows_(std::move(deep_shadows)) {}
+      deep_shadows_(std::move(deep_shadows)),
+      emitters_(std::move(emitters)) {}
 
 void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
                                    std::span<double> column) const {
@@ -362,6 +364,8 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
     PathTerm term = state.term(lamp.index(), radiance);
     if (term.scatterings + term.reflections == 0) term.distance = s;  // on the camera ray
     ++term.scatterings;
+    term.place = x;
+    term.emitter = emitters_[place->lamp];
     terms.add(term);
 }
 
@@ -379,7 +383,10 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
     if (reflection.emits()) {
         for (std::size_t b = 0; b < bands; ++b)
             radiance[b] = state.throughput[b] * transmittance[b] * reflection.emission()[b];
-        terms.add(state.term(k_no_lamp, radiance));
+        PathTerm term = state.term(k_no_lamp, radiance);
+        term.place = hit.position;
+        term.hit = &hit;
+        terms.add(term);
     }
     w.of_surface.clear();
     w.cumulative.clear();
@@ -417,6 +424,9 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
                        transmittance[b] * state.throughput[b];
     PathTerm term = state.term(lamp.index(), radiance);
     ++term.reflections;
+    term.place = hit.position;
+    term.hit = &hit;
+    term.emitter = emitters_[share.lamp];
     terms.add(term);
 }
 

@@ -18,10 +18,12 @@ namespace uw {
 /// the water on it, or reflected by the surface at its end. Thread safe.
 class LampGathering {
   public:
-    /// `deep_shadows`: columns to the lamps, one per lamp; empty: they are exact. The other
-    /// references must outlive this object.
+    /// `deep_shadows`: columns to the lamps, one per lamp; empty: they are exact. `emitters`: the
+    /// lamps' numbers among those of the whole scene. The other references must outlive this
+    /// object.
     LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
-                  std::vector<std::shared_ptr<const DeepShadow>> deep_shadows);
+                  std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
+                  std::vector<std::size_t> emitters);
 
     /// The water's: int I b p e^-tau / R^2 ds for a lamp chosen by its share, at a point chosen by
     /// its scattering angle psi, in which 1/R^2 and the forward peak are flat: ds / R^2 = dpsi / D
@@ -42,6 +44,7 @@ class LampGathering {
     const ScatteringTables& tables_;
     LampEvenness evenness_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;
+    std::vector<std::size_t> emitters_;
 };
 
 }  // namespace uw

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -29,6 +30,20 @@ struct Tangents {
 /// In place of a lamp's index: light emitted by surfaces.
 inline constexpr std::size_t k_no_lamp = std::numeric_limits<std::size_t>::max();
 
+/// In place of an emitter's: the light is not that of a lamp, or of one that is seen itself.
+inline constexpr std::size_t k_no_emitter = std::numeric_limits<std::size_t>::max();
+/// In place of the number of a turn: there is none before, or nobody keeps them.
+inline constexpr int k_no_turn = -1;
+
+/// Where a light path begins or changes its direction, seen from the camera.
+struct PathTurn {
+    enum class Kind : std::uint8_t { camera, scattered, reflected, mirrored };
+
+    Kind kind = Kind::camera;  // mirrored: by the water's surface
+    Point3 position;
+    const SurfaceHit* hit = nullptr;  // of a reflection
+};
+
 /// The light that one light path, or one bundle of them, brings to the camera.
 struct PathTerm {
     std::size_t lamp = k_no_lamp;  // where it comes from, by index
@@ -38,6 +53,15 @@ struct PathTerm {
     double distance = 0;           // from the ray's origin to where that happened [m]
     /// Estimate of the radiance, one value per band of the scene [W m^-2 sr^-1].
     std::span<const double> radiance;
+
+    // Its way, for those who were told of its turns (PathTerms::turn):
+    int turn = k_no_turn;                // the last before `place`
+    Point3 place{};                      // of its last event: scattered, reflected or emitted
+    const SurfaceHit* hit = nullptr;     // there; null in the water
+    std::size_t emitter = k_no_emitter;  // which of LitScene::emitters lights it
+    // Of light that was scattered once, by constituent: what it was computed with, the columns of
+    // its whole way [unit m] and what is at `place` [unit]. Empty: as the field has them.
+    std::span<const double> columns{}, concentration{};
 };
 
 /// Receives the terms of a path one by one. Their sum is an unbiased estimate.
@@ -45,6 +69,9 @@ class PathTerms {
   public:
     virtual ~PathTerms() = default;
     virtual void add(const PathTerm& term) = 0;
+    /// Is told of each turn of a path, after the one with the number `before` and before the terms
+    /// that come by way of it. Returns its number. Most need not know.
+    virtual int turn(int /*before*/, const PathTurn& /*turn*/) { return k_no_turn; }
 };
 
 /// What a path from the camera has done up to its current segment.
@@ -54,6 +81,7 @@ struct PathState {
     bool from_water = false;  // where it first turned, seen from the camera
     double distance = 0;      // and how far along the camera ray [m]
     double branches = 1;      // into how many it has split
+    int turn = k_no_turn;     // the last
     /// The surface that it was reflected by last, and what that reflects, roughly.
     struct LeftSurface {
         Point3 position;
@@ -63,7 +91,13 @@ struct PathState {
 
     /// A term of light that arrives along the segment.
     PathTerm term(std::size_t lamp, std::span<const double> radiance) const {
-        return {lamp, scatterings, reflections, from_water, distance, radiance};
+        return {.lamp = lamp,
+                .scatterings = scatterings,
+                .reflections = reflections,
+                .from_water = from_water,
+                .distance = distance,
+                .radiance = radiance,
+                .turn = turn};
     }
 };
 

@@ -35,10 +35,11 @@ struct PathTables {
     Spectrum light;   // of all lamps on their axes, or 1 where there is none
     Spectrum albedo;  // the greatest of all the water may hold, at least 0.1: guides paths
 
-    /// `scene`: with one emitter per lamp. `deep_shadows`: as LampGathering takes them. What is
-    /// referred to must outlive this object.
+    /// `scene`: with one emitter per lamp. `deep_shadows` and `emitters`: as LampGathering takes
+    /// them. What is referred to must outlive this object.
     PathTables(const LitScene& scene, const ScatteringTables& tables,
-               std::vector<std::shared_ptr<const DeepShadow>> deep_shadows);
+               std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
+               std::vector<std::size_t> emitters);
     PathTables(const PathTables&) = delete;
     PathTables& operator=(const PathTables&) = delete;
     PathTables(PathTables&&) = delete;

@@ -46,6 +46,10 @@ Workspace& workspace_of_thread() {
     return workspace;
 }
 
+int begin_path(const CameraSegment& segment, PathTerms& terms) {
+    return terms.turn(k_no_turn, {PathTurn::Kind::camera, segment.water.ray.origin});
+}
+
 }  // namespace
 
 PathTracer::PathTracer(const LitScene& scene,
@@ -61,7 +65,8 @@ PathTracer::PathTracer(const LitScene& scene,
         if (!deep_shadows.empty())
             for (const std::size_t emitter : view.emitters)
                 of_view.push_back(deep_shadows[emitter]);
-        tables_.push_back(std::make_unique<PathTables>(seen, *scattering_, std::move(of_view)));
+        tables_.push_back(
+            std::make_unique<PathTables>(seen, *scattering_, std::move(of_view), view.emitters));
     }
 }
 
@@ -249,6 +254,7 @@ void PathTracer::trace_single(const CameraSegment& segment, PathRandom& random,
     PathState state;
     for (double& value : state.throughput.first(tables.optics.bands())) value = 1;
     state.from_water = true;
+    state.turn = begin_path(segment, terms);
     tables.lamps.gather_from_water(segment.water, state, random, terms);
 }
 
@@ -292,6 +298,7 @@ double PathTracer::trace_water_path(const CameraSegment& segment, PathRandom& ra
         value *= length / (interval.probability * segment.paths.water);
     state.from_water = true;
     state.distance = s;
+    state.turn = begin_path(segment, terms);
     walk.from_water(segment.water, w.point);
     return walk.work();
 }
@@ -327,6 +334,7 @@ PathWalk walk_into_water(const PathTables& tables, const CameraSegment& segment,
     for (double& value : walk.state().throughput.first(tables.optics.bands()))
         value = 1 / segment.paths.lit;
     walk.state().from_water = true;
+    walk.state().turn = begin_path(segment, terms);
     return walk;
 }
 
@@ -372,6 +380,7 @@ double PathTracer::trace_surface(const CameraSegment& segment, PathRandom& rando
         for (std::size_t b = 0; b < tables.optics.bands(); ++b)
             state.throughput[b] = segment.transmittance[b] / segment.paths.surface;
         state.distance = segment.water.length;
+        state.turn = begin_path(segment, terms);
         walk.from_surface(segment.water);
         return walk.work();
     });

@@ -63,6 +63,7 @@ void PathWalk::from_water(const WaterSegment& segment, const WaterPoint& point) 
     const Point3 x = segment.ray.at(point.distance);
     vertex.scatter(tables_.guides, x, segment.ray.direction, point, state_.throughput);
     ++state_.scatterings;
+    turn(PathTurn::Kind::scattered, x);
     follow(leave(x));
 }
 
@@ -74,7 +75,12 @@ void PathWalk::from_surface(const WaterSegment& segment) {
     workspace_of_thread().vertex.reflect(tables_.guides, segment, state_.throughput);
     state_.left = {segment.hit.position, segment.hit.geometric_normal, radiance};
     ++state_.reflections;
+    turn(PathTurn::Kind::reflected, segment.hit.position, &segment.hit);
     follow(leave(above(segment.hit)));
+}
+
+void PathWalk::turn(PathTurn::Kind kind, const Point3& position, const SurfaceHit* hit) {
+    state_.turn = terms_.turn(state_.turn, {kind, position, hit});
 }
 
 // What is reflected along the path, as it arrives at the camera: the mean over the bands.
@@ -108,6 +114,7 @@ void PathWalk::from_surface_by_worth(const WaterSegment& segment) {
 void PathWalk::mirror(const WaterSegment& segment) {
     workspace_of_thread().vertex.reflect(tables_.guides, segment, state_.throughput);
     ++state_.reflections;
+    turn(PathTurn::Kind::reflected, segment.hit.position, &segment.hit);
     leave(above(segment.hit), true);
 }
 
@@ -172,6 +179,7 @@ double PathWalk::reflectance_of_water_surface() const {
 }
 
 void PathWalk::follow_mirrored() {
+    turn(PathTurn::Kind::mirrored, workspace_of_thread().segment.hit.position);
     trace(mirrored_ray());
     gather_from_segment();
 }
@@ -324,6 +332,7 @@ bool PathWalk::advance() {
         w.vertex.reflect(tables_.guides, w.segment, state_.throughput);
         state_.left = {w.segment.hit.position, w.segment.hit.geometric_normal, w.surface_radiance};
         ++state_.reflections;
+        turn(PathTurn::Kind::reflected, w.segment.hit.position, &w.segment.hit);
         return leave(above(w.segment.hit));
     }
     if (w.places.empty()) return false;  // by rounding
@@ -337,6 +346,7 @@ bool PathWalk::advance() {
     const Point3 x = w.segment.ray.at(place.distance);
     w.vertex.scatter(tables_.guides, x, w.segment.ray.direction, w.point, state_.throughput);
     ++state_.scatterings;
+    turn(PathTurn::Kind::scattered, x);
     return leave(x);
 }
 
@@ -465,6 +475,7 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
             if (!meets_water_surface()) return &w.segment;
             const double reflectance = reflectance_of_water_surface();
             for (double& value : throughput.first(bands)) value *= reflectance;
+            turn(PathTurn::Kind::mirrored, w.segment.hit.position);
             optics.set(mirrored_ray(), nullptr, w.segment);
             std::ranges::fill(w.transmittance.first(bands), 0.0);
             continue;
@@ -475,6 +486,7 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
             tables_.scattering, w.point, w.segment.ray.direction, random_, throughput.first(bands));
         if (!direction) return nullptr;
         ++state_.scatterings;
+        turn(PathTurn::Kind::scattered, w.segment.ray.at(s));
         work_ += k_work_of_plain_vertex;
         double weight = 0;
         for (std::size_t b = 0; b < bands; ++b) weight += throughput[b] * tables_.light[b];

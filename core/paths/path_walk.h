@@ -52,6 +52,8 @@ class PathWalk {
 
     static Workspace& workspace_of_thread();
 
+    // Tells of a turn, which is the path's last from now on.
+    void turn(PathTurn::Kind kind, const Point3& position, const SurfaceHit* hit = nullptr);
     // Gathers the light that arrives at the workspace's vertex from a direction that it draws,
     // along which the path may go on; false if it ends there, as it does anyhow if this `is_last`.
     bool leave(const Point3& origin, bool is_last = false);

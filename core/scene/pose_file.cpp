@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <optional>
 
 #include "core/base/error.h"
@@ -33,13 +34,6 @@ struct PoseLine {
 
 /// The largest number in a file of poses.
 constexpr double k_largest_pose_number = 1e12;
-
-/// A pose and the name of its image.
-struct NamedPose {
-    std::string name;
-    Pose pose;
-    std::size_t line = 0;  // of the file, from 1; or its place in a list
-};
 
 // Files have four digits and more.
 constexpr double k_unit_tolerance = 1e-3;
@@ -98,13 +92,17 @@ Rotation PoseLine::rotation(double w, double x, double y, double z) const {
     return normalised({w, x, y, z});
 }
 
-/// The poses by frame (PoseFile::poses). Throws InputError for names that are the same.
-std::vector<TimedPose> by_frame(std::vector<NamedPose> named, const std::string& origin) {
+/// Throws InputError for names that are the same.
+void sort_by_name(std::vector<NamedPose>& named, const std::string& origin) {
     std::ranges::sort(named, {}, &NamedPose::name);
     const auto twin = std::ranges::adjacent_find(named, {}, &NamedPose::name);
     if (twin != named.end())
         PoseLine{origin, std::max(twin->line, (twin + 1)->line)}.fail(fmt::format(
             "the image '{}' is there twice; give each its own name", printable(twin->name)));
+}
+
+/// The poses by frame (PoseFile::poses), of names in alphabetical order.
+std::vector<TimedPose> by_frame(const std::vector<NamedPose>& named) {
     std::vector<TimedPose> poses;
     poses.reserve(named.size());
     for (const NamedPose& pose : named)
@@ -211,7 +209,7 @@ PoseFile read_euroc(std::string_view text, const std::string& origin) {
     return file;
 }
 
-PoseFile read_colmap_images(std::string_view text, const std::string& origin) {
+std::vector<NamedPose> read_colmap_images(std::string_view text, const std::string& origin) {
     std::vector<NamedPose> named;
     for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
         const std::string_view content = take_line(text);
@@ -233,10 +231,69 @@ PoseFile read_colmap_images(std::string_view text, const std::string& origin) {
         take_line(text);  // the points that it sees
         ++line.number;
     }
-    PoseFile file;
-    file.counts_frames = true;
-    file.poses = by_frame(std::move(named), origin);
-    return file;
+    return named;
+}
+
+/// Takes numbers and names from the beginning of COLMAP's binary files, which are little-endian.
+class ColmapBytes {
+  public:
+    ColmapBytes(std::string_view bytes, const std::string& origin)
+        : bytes_(bytes), origin_(origin) {}
+
+    template <class T>
+    T take() {
+        if (bytes_.size() < sizeof(T)) end_early();
+        T value{};
+        std::memcpy(&value, bytes_.data(), sizeof(T));
+        bytes_.remove_prefix(sizeof(T));
+        return value;
+    }
+    std::string take_name() {
+        const std::size_t end = bytes_.find('\0');
+        if (end == std::string_view::npos) end_early();
+        std::string name(bytes_.substr(0, end));
+        bytes_.remove_prefix(end + 1);
+        return name;
+    }
+    void skip(std::uint64_t count, std::size_t size) {
+        if (count > bytes_.size() / size) end_early();
+        bytes_.remove_prefix(static_cast<std::size_t>(count) * size);
+    }
+
+  private:
+    [[noreturn]] void end_early() const {
+        throw InputError(fmt::format(
+            "{}: ends before what it announces; copy it again, or write it as images.txt",
+            origin_));
+    }
+
+    std::string_view bytes_;
+    const std::string& origin_;
+};
+
+std::vector<NamedPose> read_colmap_binary(std::string_view bytes, const std::string& origin) {
+    ColmapBytes file(bytes, origin);
+    const auto count = file.take<std::uint64_t>();
+    std::vector<NamedPose> named;
+    for (std::uint64_t i = 0; i < count; ++i) {
+        // Messages count images where those of other formats count lines.
+        const PoseLine image{origin, named.size() + 1};
+        check_count(image, named.size());
+        file.take<std::uint32_t>();  // the image's number
+        std::array<double, 7> v{};
+        for (double& number : v) {
+            number = file.take<double>();
+            if (!(std::abs(number) <= k_largest_pose_number))
+                image.fail("has a number that is none, or above 1e12");
+        }
+        file.take<std::uint32_t>();  // the camera's
+        const Affine camera_from_world{image.rotation(v[0], v[1], v[2], v[3]).matrix(),
+                                       Vector3(v[4], v[5], v[6])};
+        named.push_back({file.take_name(), pose_of(camera_from_world.inverse()), image.number});
+        constexpr std::size_t k_point_bytes = 24;  // x, y, and the point's number
+        file.skip(file.take<std::uint64_t>(), k_point_bytes);
+    }
+    return named;
 }
 
 // Files have six digits and more, some after a scale was taken out.
@@ -312,7 +369,7 @@ class NerfstudioFrame {
 };
 
 // nerfstudio's transforms.json.
-PoseFile read_nerfstudio(std::string_view text, const std::string& origin) {
+std::vector<NamedPose> read_nerfstudio(std::string_view text, const std::string& origin) {
     Json json;
     try {
         json = Json::parse(text);
@@ -329,58 +386,95 @@ PoseFile read_nerfstudio(std::string_view text, const std::string& origin) {
     std::vector<NamedPose> named;
     for (std::size_t i = 0; i < frames->size(); ++i)
         named.push_back(NerfstudioFrame((*frames)[i], i, origin).read());
-    PoseFile file;
-    file.counts_frames = true;
-    file.poses = by_frame(std::move(named), origin);
-    return file;
+    return named;
 }
 
 // COLMAP's images.txt consists almost entirely of points, so that it may be large.
 constexpr std::size_t k_most_bytes = std::size_t{1} << 30;
 
-PoseFile read_text(std::string_view text, PoseFormat format, const std::string& origin) {
+std::string_view without_mark(std::string_view text) {
     constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
     if (text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
-    switch (format) {
-        case PoseFormat::tum:
-            return read_tum(text, origin);
-        case PoseFormat::euroc:
-            return read_euroc(text, origin);
-        case PoseFormat::colmap:
-            return read_colmap_images(text, origin);
-        case PoseFormat::nerfstudio:
-            break;
-    }
-    return read_nerfstudio(text, origin);
+    return text;
 }
+
+/// In alphabetical order of the names; at least one.
+std::vector<NamedPose> named_poses(const std::string& text, bool is_binary, PoseFormat format,
+                                   const std::string& origin) {
+    std::vector<NamedPose> named = format == PoseFormat::nerfstudio
+                                       ? read_nerfstudio(without_mark(text), origin)
+                                   : is_binary ? read_colmap_binary(text, origin)
+                                               : read_colmap_images(without_mark(text), origin);
+    sort_by_name(named, origin);
+    return named;
+}
+
+PoseFile read_text(const std::string& text, bool is_binary, PoseFormat format,
+                   const std::string& origin) {
+    if (format == PoseFormat::tum) return read_tum(without_mark(text), origin);
+    if (format == PoseFormat::euroc) return read_euroc(without_mark(text), origin);
+    PoseFile file;
+    file.counts_frames = true;
+    file.poses = by_frame(named_poses(text, is_binary, format, origin));
+    return file;
+}
+
+/// The content of a file of poses, and what messages about it begin with.
+struct PoseText {
+    std::string origin, text;
+    bool is_binary = false;
+
+    PoseText(const std::filesystem::path& file, const std::string& subject)
+        : origin(fmt::format("{}: {}", subject, printable(file.string(), 300))),
+          text(read_text_file(file, origin, k_most_bytes, "file of poses")),
+          is_binary(file.extension() == ".bin") {}
+};
 
 }  // namespace
 
 PoseFile read_pose_file(const std::filesystem::path& file, PoseFormat format,
                         const std::string& subject) {
-    const std::string origin = fmt::format("{}: {}", subject, printable(file.string(), 300));
-    const std::string text = read_text_file(file, origin, k_most_bytes, "file of poses");
-    PoseFile poses = read_text(text, format, origin);
-    if (poses.poses.empty()) throw InputError(origin + ": has no pose");
-    poses.hash = text_hash(text);
+    const PoseText read(file, subject);
+    PoseFile poses = read_text(read.text, read.is_binary, format, read.origin);
+    if (poses.poses.empty()) throw InputError(read.origin + ": has no pose");
+    poses.hash = text_hash(read.text);
     return poses;
+}
+
+std::vector<NamedPose> read_named_poses(const std::filesystem::path& file, PoseFormat format,
+                                        const std::string& subject) {
+    const PoseText read(file, subject);
+    std::vector<NamedPose> named = named_poses(read.text, read.is_binary, format, read.origin);
+    if (named.empty()) throw InputError(read.origin + ": has no pose");
+    return named;
+}
+
+std::optional<PoseFormat> pose_format_called(const std::filesystem::path& file) {
+    const std::string extension = file.extension().string();
+    if (extension == ".tum") return PoseFormat::tum;
+    if (extension == ".csv") return PoseFormat::euroc;
+    if (extension == ".json") return PoseFormat::nerfstudio;
+    if (file.filename() == "images.txt" || file.filename() == "images.bin")
+        return PoseFormat::colmap;
+    return std::nullopt;
+}
+
+Pose placed(const Pose& pose, const TrajectoryDesc& desc) {
+    const Point3 scaled = at_origin_plus(desc.scale * from_origin(pose.position));
+    return {desc.world_from_file * scaled, pose_of(desc.world_from_file).rotation * pose.rotation};
 }
 
 namespace {
 
 /// From the file's world and times to the scene's.
-std::vector<TimedPose> placed(const PoseFile& file, const TrajectoryDesc& desc, double fps) {
-    const Pose world_from_file = pose_of(desc.world_from_file);
+std::vector<TimedPose> all_placed(const PoseFile& file, const TrajectoryDesc& desc, double fps) {
     std::vector<TimedPose> poses;
     poses.reserve(file.poses.size());
     for (const auto& [time, pose] : file.poses) {
         const double scene_time = file.counts_frames ? time / fps
                                   : desc.start       ? time + (file.first_time - *desc.start)
                                                      : time;
-        const Point3 scaled = at_origin_plus(desc.scale * from_origin(pose.position));
-        poses.push_back(
-            {scene_time,
-             {desc.world_from_file * scaled, world_from_file.rotation * pose.rotation}});
+        poses.push_back({scene_time, placed(pose, desc)});
     }
     return poses;
 }
@@ -394,7 +488,7 @@ std::string load_trajectory(TrajectoryDesc& desc, double fps) {
         return {};
     }
     const PoseFile file = read_pose_file(desc.file, desc.format, desc.where);
-    const std::vector<TimedPose> poses = placed(file, desc, fps);
+    const std::vector<TimedPose> poses = all_placed(file, desc, fps);
     if (const auto fault = Trajectory::first_fault(poses, desc.pacing))
         throw InputError(fmt::format(
             "{}: poses {} and {} of '{}' are at the same place, where no time passes at the given "

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/scene/trajectory.h"
@@ -32,10 +32,29 @@ inline constexpr std::size_t k_most_poses = 1'000'000;
 ///
 /// - TUM: `timestamp tx ty tz qx qy qz qw`, world_from_body, '#' comments.
 /// - EuRoC (ASL): CSV of ns, x, y, z, qw, qx, qy, qz and perhaps more; world_from_body.
-/// - COLMAP's images.txt: camera_from_world, w first, every other line skipped.
+/// - COLMAP's images.txt, camera_from_world, w first, every other line skipped; or images.bin, by
+///   the name's ending, the same in binary form.
 /// - nerfstudio's transforms.json: world_from_camera with y up and -z forward in the camera.
 PoseFile read_pose_file(const std::filesystem::path& file, PoseFormat format,
                         const std::string& subject);
+
+/// The pose of an image.
+struct NamedPose {
+    std::string name;      // the image's file, as the file of poses has it
+    Pose pose;             // as in PoseFile
+    std::size_t line = 0;  // of the file, from 1; or its place in a list
+};
+
+/// The poses of COLMAP's and nerfstudio's files by the images' names, in their alphabetical order;
+/// at least one. Throws as read_pose_file. Precondition: `format` is one of these.
+std::vector<NamedPose> read_named_poses(const std::filesystem::path& file, PoseFormat format,
+                                        const std::string& subject);
+
+/// The format by the file's name, where that leaves no doubt.
+std::optional<PoseFormat> pose_format_called(const std::filesystem::path& file);
+
+/// A pose of a file where the scene has it: scaled, then moved (TrajectoryDesc::world_from_file).
+Pose placed(const Pose& pose, const TrajectoryDesc& desc);
 
 /// Reads the file of poses that `desc` names, if it names any, and makes its trajectory; poses
 /// without times are those of the frames, `fps` per second. Returns the hash of the file's text;

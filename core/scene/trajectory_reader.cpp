@@ -4,10 +4,12 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "core/scene/config_value.h"
+#include "core/scene/pose_file.h"
 #include "core/scene/scene_context.h"
 
 namespace uw {
@@ -147,20 +149,13 @@ constexpr auto k_formats = std::to_array<std::pair<std::string_view, PoseFormat>
      {"colmap", PoseFormat::colmap},
      {"nerfstudio", PoseFormat::nerfstudio}});
 
-/// By the file's name, where it leaves no doubt.
 PoseFormat format_of(const ConfigValue& file, const std::filesystem::path& name) {
-    const std::string extension = name.extension().string();
-    if (extension == ".tum") return PoseFormat::tum;
-    if (extension == ".csv") return PoseFormat::euroc;
-    if (extension == ".json") return PoseFormat::nerfstudio;
-    if (name.filename() == "images.txt") return PoseFormat::colmap;
-    if (name.filename() == "images.bin")
+    const std::optional<PoseFormat> format = pose_format_called(name);
+    if (!format)
         file.fail(
-            "is COLMAP's binary form; convert it with 'colmap model_converter --output_type TXT' "
-            "and give images.txt");
-    file.fail(
-        "its name does not say how it is written; add format: tum, euroc, colmap or "
-        "nerfstudio");
+            "its name does not say how it is written; add format: tum, euroc, colmap or "
+            "nerfstudio");
+    return *format;
 }
 
 /// Where a file's world is: a transform whose scale is one factor above 0.

@@ -97,6 +97,7 @@ LoadedGrid grid_of_array(const ArrayView& values, const Affine& place, std::stri
     LoadedGrid grid;
     grid.name = std::move(name);
     grid.file_from_index = place;
+    grid.size = values.size;
     for (const std::size_t side : values.size)
         if (side > k_longest_side)
             throw InputError(

@@ -31,6 +31,7 @@ class GridVolume {
     LatticeLine lattice_line(const Point3& origin, const Vector3& direction) const {
         return {lattice_from_world_ * origin, lattice_from_world_.apply_to_vector(direction)};
     }
+    Point3 lattice_point(const Point3& x) const { return lattice_from_world_ * x; }
     /// The interpolated value at `x` (world).
     double value(const Point3& x) const;
     /// The exact integral of the interpolated value from `a` to `b` (world) [value m].

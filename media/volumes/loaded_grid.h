@@ -114,7 +114,8 @@ class NanoGrid {
 struct LoadedGrid {
     std::string name;
     Affine file_from_index;  // the file's transform: metres, index (i, j, k) where OpenVDB puts it
-    std::vector<NanoGrid> bricks;  // none if every value is zero
+    std::vector<NanoGrid> bricks;       // none if every value is zero
+    std::array<std::size_t, 3> size{};  // of an array, whose first value has the index 0, 0, 0
     GridStatistics statistics;
     std::vector<std::string> warnings;  // one line each, starting with `where`
 };

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _uwvdb
+from .errors import UsageError
 
 __all__ = ["Image"]
 
@@ -30,8 +31,9 @@ class Image(Mapping[str, "NDArray[np.float32]"]):
     image is gone. What is written to them is in the image.
     """
 
-    def __init__(self, image: _uwvdb.Image) -> None:
+    def __init__(self, image: _uwvdb.Image, origin: Any = None) -> None:
         self._image = image
+        self._origin = origin  # its renderer, scene and settings; None: it was unpickled
         self._layers = _layers_of(image.channels, len(image.bands))
 
     def __getitem__(self, layer: str) -> NDArray[np.float32]:
@@ -114,6 +116,33 @@ class Image(Mapping[str, "NDArray[np.float32]"]):
         Light scattered once; exact: the same sums as the image's, differentiated term by term.
         """
         return self._image.derivative(name)
+
+    def jvp(self, directions: Mapping[str, ArrayLike], **settings: Any) -> NDArray[np.float32]:
+        """The derivative of "total" as numbers of its scene move: Renderer.jvp() of the scene as it
+        was rendered. `settings` that differ, such as samples=64."""
+        renderer, scene, given = self._rendered_by("jvp")
+        derivative: NDArray[np.float32] = renderer.jvp(scene, directions, **{**given, **settings})
+        return derivative
+
+    def backward(self, gradient: ArrayLike, of: str | Sequence[str],
+                 **settings: Any) -> dict[str, NDArray[np.float64]]:
+        """The derivatives of a number by those at paths of its scene, from that by its "total":
+        Renderer.backward() of the scene as it was rendered."""
+        renderer, scene, given = self._rendered_by("backward")
+        found: dict[str, NDArray[np.float64]] = renderer.backward(scene, gradient, of,
+                                                                  **{**given, **settings})
+        return found
+
+    def _rendered_by(self, what: str) -> tuple[Any, Any, dict[str, Any]]:
+        if self._origin is None:
+            raise UsageError(f"{what}: an image that was pickled has lost its scene; use "
+                             f"Renderer.{what}")
+        renderer, scene, settings = self._origin
+        return renderer, scene, {key: value for key, value in settings.items()
+                                 if key not in ("layers", "derivatives", "orders")}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_origin": None}
 
     @property
     def automatic_exposure(self) -> float | None:

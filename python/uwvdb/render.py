@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import operator
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import _arrays, _uwvdb
+from . import _arrays, _changes, _uwvdb
 from .errors import SceneWarning, UsageError
 from .image import Image
 from .scene import Scene
@@ -40,6 +40,30 @@ class LightMatrix(NamedTuple):
         by_band = np.broadcast_to(given.reshape(len(self.lamps), -1), (len(self.lamps), bands))
         mixed: NDArray[np.float64] = np.einsum("lb,lyxb->yxb", by_band, self.images) + self.rest
         return mixed
+
+
+def _settings(what: str, scene: Scene, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Keyword arguments as the renderer takes them."""
+    if not isinstance(scene, Scene):
+        raise UsageError(f"{what}: expected a Scene, found {type(scene).__name__}; "
+                         "Scene.load(file) reads one")
+    camera = given.get("camera")
+    if camera is None and len(scene.cameras) > 1:
+        raise UsageError(f"camera: the scene has several; choose one of "
+                         f"{', '.join(scene.cameras)}")
+    settings = {key: value for key, value in given.items() if value is not None}
+    settings["camera"] = scene._camera_index(camera)
+    layers = settings.get("layers", "")
+    settings["layers"] = layers if isinstance(layers, str) else ",".join(layers)
+    return settings
+
+
+class _Origin(NamedTuple):
+    """What an image was rendered by, from and with."""
+
+    renderer: Renderer
+    scene: Scene
+    settings: dict[str, Any]
 
 
 class Renderer:
@@ -87,21 +111,13 @@ class Renderer:
         Raises InputError, IoError, UsageError, Interrupted and KeyboardInterrupt; the Renderer
         stays usable. Warns with SceneWarning.
         """
-        if not isinstance(scene, Scene):
-            raise UsageError(f"render: expected a Scene, found {type(scene).__name__}; "
-                             "Scene.load(file) reads one")
-        if camera is None and len(scene.cameras) > 1:
-            raise UsageError(f"camera: the scene has several; choose one of "
-                             f"{', '.join(scene.cameras)}")
-        settings: dict[str, Any] = {
+        options = _settings("render", scene, {
             "layers": layers or "", "quality": quality, "size": size, "crop": crop,
             "samples": samples, "integrator": integrator, "error": error, "orders": orders,
-            "frame": frame, "camera": scene._camera_index(camera),
-            "derivatives": [derivatives] if isinstance(derivatives, str) else list(derivatives)}
-        if layers is not None and not isinstance(layers, str):
-            settings["layers"] = ",".join(layers)
-        settings = {key: value for key, value in settings.items() if value is not None}
-        image = Image(self._renderer.render(scene._native, settings, progress))
+            "frame": frame, "camera": camera,
+            "derivatives": [derivatives] if isinstance(derivatives, str) else list(derivatives)})
+        native = self._renderer.render(scene._native, options, progress)
+        image = Image(native, _Origin(self, scene.copy(), options))
         for line in image.warnings:
             warnings.warn(line, SceneWarning, stacklevel=2)
         return image
@@ -127,6 +143,59 @@ class Renderer:
             (0, *image["total"].shape), np.float32)
         return LightMatrix([name.removeprefix("lamp.") for name in names], images,
                            image["total"] - images.sum(axis=0, dtype=np.float32))
+
+    def jvp(self, scene: Scene, directions: Mapping[str, ArrayLike], *, seed: int = 0,
+            progress: Progress | None = None, **settings: Any) -> NDArray[np.float32]:
+        """The derivative of "total" (height, width, bands) as the numbers at some paths of the
+        scene move along `directions` (a Jacobian times a vector): {"lamps[0].position": [1, 0, 0]}
+        for a lamp that moves along x [radiance per m]. One number stands for all of a list.
+
+        The numbers are those of the water and its species, of the volumes, of the lamps, and of
+        what surfaces reflect. `settings`: as for render(). Where the image is of light scattered
+        once, it is exact: the image's own sums, differentiated term by term. With
+        render.scattering multiple, and by integrator "path", it is the mean over `samples` random
+        paths per pixel, without bias and with noise: other ones for another `seed`. Not in it is what a number moves in the image:
+        the edges of shadows, and of beams that end at once.
+
+        Raises UsageError for what has no such derivatives, and as render().
+        """
+        options = _settings("jvp", scene, {**settings, "seed": seed})
+        images = self._renderer.derivatives(scene._native, [_changes.change(scene, directions)],
+                                            options, progress)
+        return images[0]
+
+    def backward(self, scene: Scene, gradient: ArrayLike, of: str | Sequence[str], *,
+                 seed: int = 0, progress: Progress | None = None,
+                 **settings: Any) -> dict[str, NDArray[np.float64]]:
+        """The derivatives of a number by those at the paths `of` (a vector times a Jacobian), each
+        of the shape that the scene has there; `gradient` (height, width, bands) is the number's
+        derivative by "total": 2 (total - seen) where it is the sum of squares of what an image is
+        off. "volumes[0].array" stands for all values of an array that was added to the volumes.
+
+        Like jvp() otherwise. Numbers take a pass over the image together, and each array one. Unless
+        the quality is "exact", a few places on each ray stand for all in those of arrays: descend
+        with another `seed` in each step."""
+        options = _settings("backward", scene, {**settings, "seed": seed})
+        paths = [of] if isinstance(of, str) else list(of)
+        weights = _changes.checked_gradient(gradient, scene, settings)
+        result: dict[str, NDArray[np.float64]] = {}
+        changes: list[_changes.Change] = []
+        shapes: dict[str, tuple[int, ...]] = {}
+        for path in paths:
+            volume = _changes.volume_of_array(path)
+            if volume is not None:
+                result[path] = self._renderer.voxel_derivatives(
+                    scene._native, volume, weights, options, progress).astype(np.float64)
+                continue
+            shapes[path], more = _changes.changes_of(scene, path)
+            changes += more
+        if changes:
+            images = self._renderer.derivatives(scene._native, changes, options, progress)
+            numbers = np.einsum("kyxb,yxb->k", images, weights)
+            ends = np.cumsum([np.prod(shape, dtype=int) for shape in shapes.values()])
+            for (path, shape), of_path in zip(shapes.items(), np.split(numbers, ends[:-1])):
+                result[path] = of_path.reshape(shape)
+        return {path: result[path] for path in paths}
 
     def clear(self) -> None:
         """Frees what is kept for the next image, and reads files anew."""

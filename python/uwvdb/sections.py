@@ -123,6 +123,17 @@ class Volumes(Section):
         return name
 
 
+    def set_values(self, name: str, array: ArrayLike) -> None:
+        """Puts other values in the place of the array that was added as `name`, of the same shape.
+        Raises UsageError."""
+        where = "volumes.set_values"
+        values = _arrays.numbers(where, array, np.float32)
+        if values.ndim != 3:
+            raise UsageError(f"{where}: expected an array of shape (nx, ny, nz), "
+                             f"found {_arrays.shape_text(values.shape)}")
+        self._scene.set_array(name, values, where)
+
+
 def _placed(where: str, voxel_size: ArrayLike, origin: ArrayLike) -> NDArray[np.float64]:
     edges = _arrays.vector(f"{where}: voxel_size", voxel_size)
     if not (edges > 0).all():

@@ -1,6 +1,8 @@
 # ctest labels: analytic
 """Derivatives of images, against central differences."""
 
+import pickle
+
 import numpy as np
 import pytest
 
@@ -171,9 +173,7 @@ def test_derivatives_leave_the_image_as_it_is_and_outlive_it(murky):
 @pytest.mark.parametrize("changes, name, message", [
     ({}, "water.absorbtion", "unknown; use water.absorption"),
     ({}, "concentration.small", "the volumes hold nothing"),
-    ({"render.integrator": "reference"}, "water.absorption", "choose integrator volume"),
-    ({"render.scattering": "multiple"}, "water.absorption",
-     "more than once is the mean over random paths and has none; set render.scattering to single"),
+    ({"render.integrator": "reference"}, "water.absorption", "integrators volume and path"),
     ({"water.forward_scatter": {"K": 0.1, "G": 0.1, "B": 0.1}}, "water.absorption",
      "blurs the finished image, .*; remove water.forward_scatter, or set its K to 0"),
     ({"water.snow": {"number": 2000, "diameter": ["0.2 mm", "5 mm"]}}, "water.absorption",
@@ -200,3 +200,144 @@ def test_light_matrix_mixes_lamps(scene):
     assert np.allclose(matrix.mix([1, 1]), matrix.images.sum(axis=0), rtol=1e-6)
     with pytest.raises(uwvdb.UsageError, match=r"expected factors of shape \(2,\) or \(2, 3\)"):
         matrix.mix([1, 2, 3])
+
+
+def plain(scene):
+    """Light scattered once, whose numbers are all written."""
+    scene.update({"camera.resolution": [6, 4], "render": {"samples": 1, "scattering": "single"},
+                  "water.absorption": [0.3, 0.1, 0.05], "lamps.left.profile":
+                  {"type": "cosine", "fwhm": 80},
+                  "water.scattering": {"b": [0.2, 0.25, 0.3], "phase": {"type": "hg", "g": 0.8}}})
+    return scene
+
+
+# The reference integrator has no nodes that move with lamps. Images are float32: smaller steps
+# would leave too few digits.
+@pytest.mark.parametrize("path, direction, step", [
+    ("water.absorption", [1, 2, 0.5], 0.004), ("water.scattering.b", [1, 0.5, -1], 0.004),
+    ("water.scattering.phase.g", 1, 0.004), ("lamps.left.intensity", [1, 2, 3], 0.1),
+    ("lamps.left.position", [1, 0.5, 0.2], 0.005), ("lamps.left.direction", [1, 0, 0], 0.01),
+    ("lamps.left.profile.fwhm", 1, 0.5), ("geometry[0].reflectance", 1, 0.02)])
+def test_jvp_by_numbers_of_the_scene(scene, path, direction, step):
+    scene = plain(scene)
+    values = scene[path]
+
+    def render(h):
+        changed = scene.copy()
+        changed[path] = (np.array(values) + h * np.array(direction)).tolist()
+        return RENDERER.render(changed, quality="exact", integrator="reference")["total"]
+    derivative = RENDERER.render(scene, quality="exact").jvp({path: direction})
+    assert_alike(derivative, central(render, step))
+
+
+def test_backward_is_the_transpose_of_jvp(scene):
+    scene = with_volumes(plain(scene))
+    image = RENDERER.render(scene, quality="exact")
+    weights = np.random.default_rng(1).normal(size=image["total"].shape)
+    found = image.backward(weights, ["lamps.left.position", "volumes[1].grids.ink.scattering",
+                                     "volumes[0].grids.array1.large"])
+    along = {"lamps.left.position": np.array([0.3, -0.2, 0.1]),
+             "volumes[1].grids.ink.scattering": np.array(0.5),
+             "volumes[0].grids.array1.large": np.array(-2.0)}
+    expected = (image.jvp(along) * weights).sum()
+    assert sum((found[path] * along[path]).sum() for path in along) == pytest.approx(expected,
+                                                                                   rel=1e-5)
+
+
+def test_backward_to_voxels(scene):
+    scene = plain(scene)
+    rng = np.random.default_rng(6)
+    values = rng.uniform(0.2, 1, (8, 6, 6))
+    values[3, 3, 3] = 0  # also where there is nothing
+    scene.volumes.add(values, voxel_size=0.2, origin=(-0.7, -0.5, 1), absorption=[2, 1.5, 1],
+                      scattering=0.8, phase={"type": "hg", "g": 0.5}, name="ink")
+    image = RENDERER.render(scene, quality="exact")
+    weights = rng.normal(size=image["total"].shape)
+    gradient = image.backward(weights, "volumes[0].array")["volumes[0].array"]
+    assert gradient.shape == values.shape
+    # Columns on the camera's ray are those of linear pieces, a quarter of a voxel long.
+    tolerance = 2e-3 * np.linalg.norm(gradient)
+    # All of them together: what a factor on what they mean does.
+    along = {"volumes[0].grids.ink.absorption": [2, 1.5, 1],
+             "volumes[0].grids.ink.scattering": 0.8}
+    assert (gradient * values).sum() == pytest.approx(
+        (image.jvp(along) * weights).sum(), abs=tolerance * np.linalg.norm(values))
+
+    def render(h, direction):
+        changed = scene.copy()
+        changed.volumes.set_values("ink", values + h * direction)
+        light = RENDERER.render(changed, quality="exact", integrator="reference")["total"]
+        return (light * weights).sum()
+    for direction in (rng.normal(size=values.shape) * (values > 0), np.eye(1, 288, 100).reshape(
+            values.shape)):
+        expected = central(lambda h: render(h, direction), 0.04)
+        assert (gradient * direction).sum() == pytest.approx(
+            expected, abs=tolerance * np.linalg.norm(direction))
+    # At final a few nodes of each ray stand for all. For so many rays their noise is 0.12.
+    many = dict(gradient=np.ones((24, 36, 3)), of="volumes[0].array", size=(36, 24))
+    exact = image.backward(**many)["volumes[0].array"]
+    drawn = image.backward(**many, quality="final")["volumes[0].array"]
+    assert 0 < np.linalg.norm(drawn - exact) < 0.3 * np.linalg.norm(exact)
+
+
+@pytest.mark.parametrize("path, direction, step", [
+    ("water.absorption", [1, 1, 1], 0.02), ("water.scattering.b", [1, 1, 1], 0.04),
+    ("water.scattering.phase.g", 1, 0.02), ("geometry[0].reflectance", 1, 0.1)])
+def test_of_all_light(scene, path, direction, step):
+    """Within three standard errors of central differences, mean over the image: those of the
+    differences, which are twenty times those of the derivative."""
+    scene = plain(scene)
+    scene["camera.resolution"] = [4, 3]
+    del scene["render.scattering"]
+    scene["render.integrator"] = "path"
+    values = scene[path]
+
+    def render(h):
+        changed = scene.copy()
+        changed[path] = (np.array(values) + h * np.array(direction)).tolist()
+        image = RENDERER.render(changed, ["total", "error"], samples=2048)
+        return image["total"].astype(float).mean(), np.sqrt((image["error"]**2).sum()) / 36
+    (more, error), (less, _) = render(step), render(-step)
+    found = RENDERER.jvp(scene, {path: direction}, samples=512).mean()
+    assert abs(found - (more - less) / (2 * step)) < 3 * np.sqrt(2) * error / (2 * step)
+    assert abs(found) > 10 * error  # some of it
+
+
+def test_of_all_light_by_voxels_and_by_names(scene):
+    scene = with_volumes(plain(scene))
+    scene["camera.resolution"] = [3, 2]
+    del scene["render.scattering"]
+    scene["render.integrator"] = "path"
+    image = RENDERER.render(scene, samples=64, derivatives=["concentration.ink"])
+    weights = np.ones(image["total"].shape)
+    # The same paths: to rounding, but for what voxels of 16 bits are quantised by.
+    gradient = image.backward(weights, "volumes[1].array")["volumes[1].array"]
+    values = np.random.default_rng(6)
+    values.uniform(0.2, 1, (8, 6, 6))
+    ink = values.uniform(0.2, 1, (6, 6, 6))
+    assert (gradient * ink).sum() == pytest.approx(image.derivative("concentration.ink").sum(),
+                                                   rel=1e-4)
+
+
+@pytest.mark.parametrize("path, message", [
+    ("camera.intrinsics.fov_x", "where the camera sees a point"),
+    ("geometry[0].point", "it moves surfaces"),
+    ("water.salinity", "is not written in the scene"),
+    ("lamps.left.name", "expected a number or a list of numbers"),
+    ("volumes[0].array", "is not written in the scene")])
+def test_by_what_there_is_none(scene, path, message):
+    with pytest.raises(uwvdb.UsageError, match=f"{message}"):
+        RENDERER.jvp(plain(scene), {path: 1})
+
+
+def test_a_gradient_of_another_shape(scene):
+    with pytest.raises(uwvdb.UsageError, match=r"expected the shape .* \(4, 6, 3\), found \(4, 6\)"):
+        RENDERER.backward(plain(scene), np.zeros((4, 6)), "water.absorption")
+    with pytest.raises(uwvdb.UsageError, match="volumes in memory"):
+        RENDERER.backward(plain(scene), np.zeros((4, 6, 3)), "volumes[0].array")
+
+
+def test_a_pickled_image_has_lost_its_scene(scene):
+    image = pickle.loads(pickle.dumps(RENDERER.render(scene)))
+    with pytest.raises(uwvdb.UsageError, match="use Renderer.jvp"):
+        image.jvp({"water.absorption": 1})

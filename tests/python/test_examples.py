@@ -59,3 +59,13 @@ def test_fit_water(tmp_path):
         assert abs(value - truth) < 4 * error and error < 0.5 * truth
     # One each step: by differences each would take eight.
     assert int(said.splitlines()[-1].split()[0]) < 40
+
+
+def test_fit_plume(tmp_path):
+    figure = tmp_path / "plume.png"
+    said = run_example("fit_plume.py", "--size", "20x15", "--voxels", 9, "--steps", 20, "--figure",
+                       figure, folder=tmp_path)
+    pictures, density = map(float, re.search(r"by +(\S+) % of.*by +(\S+) %", said).groups())
+    # From a haze, 90 % off, and with the 1 % of noise in the pictures.
+    assert pictures < 10 and density < 60
+    assert figure.stat().st_size > 10000

@@ -19,7 +19,7 @@ Film backscatter_of(const SceneDesc& desc) {
     return image_of(desc, {.layers = "backscatter"});
 }
 
-SceneDesc clear_scene(int side) {
+SceneDesc focused_scene(int side) {
     SceneDesc desc = pinhole_scene(side, side);
     desc.water.absorption = PerBand{0, 0, 0};
     desc.water.scattering->b = {0, 0, 0};
@@ -51,7 +51,7 @@ BlurSpot blur_spot_of(const Film& film) {
 /// along each axis is a quarter of that squared, and no light is lost.
 TEST(DepthOfField, ABrightThingIsBlurredByTheCircleOfConfusion) {
     for (const double depth : {2.0, 0.7, 1.0}) {
-        SceneDesc desc = clear_scene(64);
+        SceneDesc desc = focused_scene(64);
         desc.camera.intrinsics = {600, 600, 32, 32};
         const double half = 0.01 * depth;  // 6 pixels
         desc.geometry = {box({-half, -half, depth}, {half, half, depth + 0.01})};

@@ -26,7 +26,7 @@ SceneDesc glowing(const MeshFolder& folder) {
     return desc;
 }
 
-constexpr Layer k_layers[] = {Layer::direct, Layer::forward, Layer::backscatter};
+constexpr Layer k_blurred[] = {Layer::direct, Layer::forward, Layer::backscatter};
 
 /// These layers without those of single lamps.
 class PlainFilm {
@@ -66,7 +66,7 @@ class PlainFilm {
 /// What is blurred is off by the rounding of floats in its transforms, of the brightest pixel.
 template <class A>
 void expect_same(const A& a, const PlainFilm& b, double tolerance) {
-    for (const Layer layer : k_layers) {
+    for (const Layer layer : k_blurred) {
         const double allowed = tolerance * b.brightest(layer);
         EXPECT_GT(allowed, 0);
         for (int y = 0; y < b.height(); ++y)

@@ -1,4 +1,4 @@
-// ctest labels: unit analytic
+// ctest labels: unit analytic slow
 //
 // What moves while the shutter is open is blurred, whatever integrates its light. Ground truth
 // stays that of the exposure's middle. Against the mean over instants: motion_blur_mean.cpp.

@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit slow
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -51,10 +51,11 @@ class FitPictures : public CliTest {
         ASSERT_EQ(result.exit_code, 0) << result.err;
     }
     Json fit(const std::string& images, const std::string& unknown,
-             const std::vector<std::string>& start) {
+             const std::vector<std::string>& start, const std::vector<std::string>& more = {}) {
         std::vector<std::string> arguments{"fit",       "dive.yaml", "--images", images,
                                            "--unknown", unknown,     "--json",   "--quiet",
                                            "--cells",   "40",        "--report", "fit.html"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
         for (const std::string& value : start) {
             arguments.push_back("--set");
             arguments.push_back(value);

@@ -1,4 +1,4 @@
-// ctest labels: unit metamorphic
+// ctest labels: unit metamorphic slow
 // A set is the same bytes however it is made: at once, in shards, on any number of threads, after
 // being killed.
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit metamorphic
+// ctest labels: unit metamorphic slow
 // Sequences of scenes in which something moves.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit slow
 //
 // Files of other programs through the whole program, with automatic settings. The environment
 // variable UWVDB_SAMPLES names their folder; where it is set, a file that is missing is a failure.

@@ -447,7 +447,7 @@ TEST(Waves, SlopesAreComparedWithCoxAndMunks) {
     const WaveSpectrumDesc sea = sea_of(WaveSpectrumDesc::Model::jonswap);
     const WaterWaves waves(desc_of(sea), 0);
     const std::string text = compare_with_cox_munk(sea, waves);
-    EXPECT_NE(text.find("wavelengths of 0.625 to 40 m"), std::string::npos) << text;
+    EXPECT_NE(text.find("lengths of 0.625 to 40 m"), std::string::npos) << text;
     // 7 m/s at 10 m are 2 % more at 12.5 m.
     EXPECT_NE(text.find("7.1 m/s"), std::string::npos) << text;
     EXPECT_LT(waves.statistics().slopes.total(), cox_munk_slopes(7.1).total());

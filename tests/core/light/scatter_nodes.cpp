@@ -41,19 +41,6 @@ TEST(ScatterNodes, WithoutConstituentsThereIsNothingToLookUp) {
     EXPECT_EQ(nodes.size(), 0U);
 }
 
-TEST(ScatterNodes, AreWeighedByTheLengthOrAColumnOfTheirOwnPath) {
-    ScatterNodes nodes;
-    nodes.s = {1, 2, 4};
-    nodes.radius = {8, 16, 32};
-    nodes.column = {0.5, 0.25, 0.125, 3, 5, 7};  // of two constituents
-    nodes.weight = {1, 10, 100};
-    nodes.weigh({PathWeight::Kind::length});
-    EXPECT_EQ(nodes.weight, (std::vector<double>{9, 180, 3600}));
-    nodes.weight = {1, 10, 100};
-    nodes.weigh({PathWeight::Kind::column, 1});
-    EXPECT_EQ(nodes.weight, (std::vector<double>{3, 50, 700}));
-}
-
 /// Nodes with every number of its own.
 ScatterNodes varied_nodes(std::size_t count, std::size_t constituents, std::size_t phases) {
     ScatterNodes nodes;

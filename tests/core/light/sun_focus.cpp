@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/geometry/waves.h"
+#include "core/light/lamp.h"
 #include "core/scene/waves_desc.h"
 
 namespace uw::test {
@@ -176,6 +177,52 @@ TEST(SunFocus, KeepsTheLightThatEnters) {
     }
     // Slopes of a few degrees change what enters by a few per cent.
     EXPECT_NEAR(at_surface, 1, 0.05);
+}
+
+// Of what enters through one wave, summed along it here: by Snell's and Fresnel's laws at each
+// slope, through the area that faces the sun.
+TEST(SunFocus, LightTravelsAsTheSlopesRefractIt) {
+    constexpr double k_amplitude = 0.06, k_wavelength = 2, k_altitude = 12;  // [degrees]
+    const double k = 2 * pi / k_wavelength, altitude = k_altitude * pi / 180;
+    const Vector3 in_air(std::cos(altitude), -std::sin(altitude), 0);
+    const WaterSurface surface = surface_of(one_wave(k_amplitude, k_wavelength));
+    const SunFocus focus(surface, in_air, 0, {.side = 8, .is_periodic = true, .depth = 4}, 256);
+    double flux = 0, aside = 0, calm = 0;
+    constexpr int k_slopes = 20000;
+    const auto entering = [&](double slope, double& down_slope) {
+        const double tilt = std::atan(slope);  // the surface rises along x
+        const double from_normal = pi / 2 - altitude - tilt;
+        if (!(std::cos(from_normal) > 0)) return 0.0;
+        const double refracted = std::asin(std::sin(from_normal) / k_n);
+        const double s = std::sin(from_normal - refracted) / std::sin(from_normal + refracted);
+        const double p = std::tan(from_normal - refracted) / std::tan(from_normal + refracted);
+        down_slope = std::tan(refracted + tilt);
+        return std::cos(from_normal) / std::cos(tilt) * (1 - (s * s + p * p) / 2);
+    };
+    for (int i = 0; i < k_slopes; ++i) {
+        const double u = (i + 0.5) * k_wavelength / k_slopes;
+        double slope = 0;
+        const double part = entering(k_amplitude * k * std::sin(k * u), slope);
+        flux += part;
+        aside += part * slope;
+    }
+    const double mean = aside / flux;
+    const Vector3 direction = focus.direction();
+    EXPECT_NEAR(direction.x / -direction.y, mean, 1e-3);  // 384 beams along the wave
+    EXPECT_NEAR(direction.z, 0, 1e-6);
+    EXPECT_NEAR(glm::length(direction), 1, 1e-12);
+    entering(0, calm);
+    EXPECT_GT(mean, calm + 0.05);  // flatter than below calm water
+
+    // A level plane gets the same light as by calm water's direction.
+    const Sunlight sunlight =
+        Sunlight::from_air(in_air, WaterSurfaceDesc{{0, 5, 0}, {0, 1, 0}, k_n});
+    Spectrum irradiance{};
+    irradiance[0] = 3;
+    const Lamp sun("sun", sunlight, irradiance);
+    const Lamp focused = sun.focused(std::make_shared<SunFocus>(focus));
+    EXPECT_NEAR(focused.axis_intensity()[0] * direction.y, 3 * sunlight.direction.y, 1e-9);
+    EXPECT_NEAR(glm::distance(focused.sunlight()->direction, direction), 0, 1e-12);
 }
 
 }  // namespace

@@ -117,14 +117,14 @@ TEST(Dispersion, IsWrittenAsItWasRead) {
     }
 }
 
-const char* const k_scene = R"(uwvdb: 1
+const char* const k_dispersing = R"(uwvdb: 1
 camera: {resolution: [64, 48], intrinsics: {fov_x: 60}, port: {n_glass: bk7, n_water: seawater}}
 water: {bands: [620, 540, 450], absorption: 0.1, salinity: 20, temperature: 5}
 lamps: [{name: a, position: [0, 1, 0], intensity: 1}]
 )";
 
 TEST(Dispersion, APortHasTheWaterOfItsSceneAndTheIndicesOfOneBand) {
-    SceneDesc scene = read_scene_text(k_scene, "s.yaml", {});
+    SceneDesc scene = read_scene_text(k_dispersing, "s.yaml", {});
     EXPECT_EQ(scene.camera.wavelength_nm, 540);
     const auto& port = std::get<FlatPortDesc>(*scene.camera.port);
     EXPECT_EQ(port.n_water, water_refractive_index(540, 5, 20));
@@ -134,13 +134,13 @@ TEST(Dispersion, APortHasTheWaterOfItsSceneAndTheIndicesOfOneBand) {
     set_wavelength(scene.camera, 450);
     EXPECT_EQ(port.n_water, water_refractive_index(450, 5, 20));
     const SceneDesc own =
-        read_scene_text(k_scene, "s.yaml", {"camera.port.n_water={temperature: 9}"});
+        read_scene_text(k_dispersing, "s.yaml", {"camera.port.n_water={temperature: 9}"});
     EXPECT_EQ(std::get<FlatPortDesc>(*own.camera.port).n_water, water_refractive_index(540, 9, 20));
 }
 
 TEST(Dispersion, NumbersAreTheSameAtAllWavelengths) {
-    SceneDesc scene =
-        read_scene_text(k_scene, "s.yaml", {"camera.port.n_glass=1.5", "camera.port.n_water=1.34"});
+    SceneDesc scene = read_scene_text(k_dispersing, "s.yaml",
+                                      {"camera.port.n_glass=1.5", "camera.port.n_water=1.34"});
     EXPECT_FALSE(disperses(scene.camera));
     set_wavelength(scene.camera, 450);
     EXPECT_EQ(std::get<FlatPortDesc>(*scene.camera.port).n_water, 1.34);
@@ -148,7 +148,7 @@ TEST(Dispersion, NumbersAreTheSameAtAllWavelengths) {
 
 TEST(Dispersion, BandsBeyondTheMaterialsAreRefused) {
     EXPECT_NE(test::message_of<InputError>([] {
-                  (void)read_scene_text(k_scene, "s.yaml", {"water.bands=[250, 540, 620]"});
+                  (void)read_scene_text(k_dispersing, "s.yaml", {"water.bands=[250, 540, 620]"});
               }).find("port: indices by material are known from 300 to 1100 nm"),
               std::string::npos);
 }

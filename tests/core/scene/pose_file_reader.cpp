@@ -3,8 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "tests/support/message_of.h"
@@ -111,6 +116,69 @@ TEST_F(PoseFiles, NerfstudioHasOpenGlsAxes) {
     EXPECT_EQ(file.poses[1].time, 1);
     // Its -z, forward, is the world's x; its right the world's z.
     expect_axes(file.poses[1].pose, {0, 0, 1}, {0, -1, 0}, {1, 0, 0});
+}
+
+/// COLMAP's images.bin, as its src/colmap/scene/reconstruction_io.cc writes it: the number of
+/// images, then of each its number, quaternion, translation, camera and name, and its points.
+std::string colmap_bytes(const std::vector<std::pair<std::string, std::array<double, 7>>>& images) {
+    std::string bytes;
+    const auto add = [&](auto value) {
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    add(std::uint64_t{images.size()});
+    std::uint32_t number = 7;
+    for (const auto& [name, pose] : images) {
+        add(number++);
+        for (const double value : pose) add(value);
+        add(std::uint32_t{1});
+        bytes += name + '\0';
+        add(std::uint64_t{2});
+        for (int point = 0; point < 2; ++point) {
+            add(12.5);
+            add(-3.0);
+            add(std::int64_t{-1});
+        }
+    }
+    return bytes;
+}
+
+// The same poses in both of COLMAP's forms.
+TEST_F(PoseFiles, ColmapsBinaryFormIsTheSame) {
+    const double r = std::sqrt(0.5);
+    const auto binary = read_pose_file(
+        folder_.write("images.bin", colmap_bytes({{"f_12.png", {r, 0, r, 0, 1, 2, 3}},
+                                                  {"f_8.png", {1, 0, 0, 0, 0, 0, -5}}})),
+        PoseFormat::colmap, "scene");
+    const PoseFile text = read(PoseFormat::colmap,
+                               "1 0.70710678118654757 0 0.70710678118654757 0 1 2 3 1 f_12.png\n"
+                               "12.5 -3 -1 12.5 -3 -1\n2 1 0 0 0 0 0 -5 1 f_8.png\n\n");
+    EXPECT_EQ(binary.poses, text.poses);
+    EXPECT_TRUE(binary.counts_frames);
+    const auto named = read_named_poses(folder_.path() / "images.bin", PoseFormat::colmap, "scene");
+    ASSERT_EQ(named.size(), 2U);
+    EXPECT_EQ(named[0].name, "f_12.png");
+    EXPECT_EQ(named[1].pose, text.poses[0].pose);
+}
+
+TEST_F(PoseFiles, ColmapsBinaryFormIsRefusedInOneLine) {
+    const auto message = [&](const std::string& bytes) {
+        return message_of<InputError>([&] {
+            read_pose_file(folder_.write("images.bin", bytes), PoseFormat::colmap, "scene");
+        });
+    };
+    const auto expect = [&](const std::string& bytes, const std::string& what) {
+        EXPECT_NE(message(bytes).find(what), std::string::npos) << message(bytes);
+    };
+    const std::string whole = colmap_bytes({{"a.png", {1, 0, 0, 0, 0, 0, 0}}});
+    expect("", "images.bin: ends before what it announces");
+    for (const std::size_t size : {std::size_t{5}, std::size_t{30}, whole.size() - 1})
+        expect(whole.substr(0, size), "ends before what it announces");
+    expect(std::string(8, '\xff'), "ends before what it announces");
+    expect(std::string(8, '\0'), "has no pose");
+    expect(colmap_bytes({{"a.png", {2, 0, 0, 0, 0, 0, 0}}}), "images.bin:1: the quaternion has");
+    expect(colmap_bytes({{"a.png", {1, 0, 0, 0, std::nan(""), 0, 0}}}), "has a number that is");
+    expect(colmap_bytes({{"a.png", {1, 0, 0, 0, 0, 0, 0}}, {"a.png", {1, 0, 0, 0, 0, 0, 0}}}),
+           "the image 'a.png' is there twice");
 }
 
 // The numbers in names are those of frames only if nothing else differs.

@@ -118,7 +118,6 @@ TEST_F(TrajectoryKeys, FaultsSayWhereAndWhat) {
          {"{speed: 0, keyframes: [{rotate: [0, 0, 0]}]}}", "camera.trajectory.speed: "},
          {"{file: none.tum}}", "camera.trajectory.file: "},
          {"{file: poses.txt}}", "camera.trajectory.file: its name does not say"},
-         {"{file: images.bin}}", "colmap model_converter"},
          {"{file: images.txt, start: 3}}", "trajectory.start: files of this format have no times"},
          {"{file: dive.tum, keyframes: []}}", "keyframes: a trajectory has either"},
          {"{file: dive.tum, transform: {scale: [1, 2, 1]}}}", "transform: the scale of a"},

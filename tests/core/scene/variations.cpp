@@ -80,13 +80,13 @@ TEST(Variations, ChoicesAreAsFrequentAsTheirWeights) {
     const VariationsDesc variations =
         of_keys("a: {choice: [jerlov-II, [1, 2], {type: hg, g: 0.9}, '7'], weights: [1, 0, 2, 1]}");
     std::map<std::string, int> counts;
-    constexpr int k_draws = 40'000;
-    for (int i = 0; i < k_draws; ++i) ++counts[values_of(variations, i).at("a")];
+    constexpr int k_drawn = 40'000;
+    for (int i = 0; i < k_drawn; ++i) ++counts[values_of(variations, i).at("a")];
     EXPECT_EQ(counts.size(), 3U);
     // Standard deviations are 87 and 100; 4.5 of them.
-    EXPECT_NEAR(counts["jerlov-II"], k_draws / 4, 390);
-    EXPECT_NEAR(counts["'7'"], k_draws / 4, 390);
-    EXPECT_NEAR(counts["{type: hg, g: 0.9}"], k_draws / 2, 450);
+    EXPECT_NEAR(counts["jerlov-II"], k_drawn / 4, 390);
+    EXPECT_NEAR(counts["'7'"], k_drawn / 4, 390);
+    EXPECT_NEAR(counts["{type: hg, g: 0.9}"], k_drawn / 2, 450);
 }
 
 TEST(Variations, RowsAreDrawnTogetherWhetherInTheSceneOrInATable) {
@@ -99,15 +99,15 @@ TEST(Variations, RowsAreDrawnTogetherWhetherInTheSceneOrInATable) {
         "variations: {together: [{weights: [1, 3], rows: [{water.preset: jerlov-IB, "
         "'lamps[1].power': 5}, {'lamps[1].power': 9, water.preset: jerlov-3C}]}]}");
     int clear = 0;
-    constexpr int k_draws = 4000;
-    for (int i = 0; i < k_draws; ++i) {
+    constexpr int k_drawn = 4000;
+    for (int i = 0; i < k_drawn; ++i) {
         const auto values = values_of(table, i);
         EXPECT_EQ(values, values_of(rows, i));
         const bool is_clear = values.at("water.preset") == "jerlov-IB";
         EXPECT_EQ(values.at("lamps[1].power"), is_clear ? "5" : "9");
         clear += is_clear ? 1 : 0;
     }
-    EXPECT_NEAR(clear, k_draws / 4, 124);  // 4.5 standard deviations
+    EXPECT_NEAR(clear, k_drawn / 4, 124);  // 4.5 standard deviations
 }
 
 TEST(Variations, WhatIsWrongIsSaidWithItsPlaceAndMend) {

@@ -1,4 +1,4 @@
-// ctest labels: metamorphic golden
+// ctest labels: metamorphic golden slow
 #include <gtest/gtest.h>
 
 #include <filesystem>

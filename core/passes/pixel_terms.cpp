@@ -1,0 +1,102 @@
+#include "core/passes/pixel_terms.h"
+
+#include <numeric>
+
+#include "core/geometry/surface_reflection.h"
+
+namespace uw {
+
+namespace {
+
+/// Passes terms on, each times a factor.
+class WeightedTerms final : public PathTerms {
+  public:
+    WeightedTerms(PathTerms& terms, double weight) : terms_(terms), weight_(weight) {}
+
+    int turn(int before, const PathTurn& turn) override { return terms_.turn(before, turn); }
+    void add(const PathTerm& term) override {
+        for (std::size_t b = 0; b < term.radiance.size(); ++b)
+            radiance_[b] = weight_ * term.radiance[b];
+        PathTerm weighted = term;
+        weighted.radiance = radiance_.first(term.radiance.size());
+        terms_.add(weighted);
+    }
+
+  private:
+    PathTerms& terms_;
+    double weight_;
+    Spectrum radiance_;
+};
+
+}  // namespace
+
+void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
+                      const SurfaceLight& light, std::size_t in_light, PathTerms& terms,
+                      Spectrum& leaving) {
+    const auto bands = static_cast<std::size_t>(scene.medium->band_count());
+    const std::span<const double> to_camera = light.to_camera(in_light);
+    const SurfaceReflection reflection(*scene.surfaces, surface, static_cast<int>(bands));
+    Spectrum arriving, brdf;
+    PathTerm term{.distance = surface.hit.distance,
+                  .radiance = arriving.first(bands),
+                  .turn = terms.turn(k_no_turn, {PathTurn::Kind::camera, surface.ray.origin}),
+                  .place = surface.hit.position,
+                  .hit = &surface.hit};
+    if (reflection.emits()) {
+        for (std::size_t b = 0; b < bands; ++b) {
+            leaving[b] += reflection.emission()[b];
+            arriving[b] = reflection.emission()[b] * to_camera[b];
+        }
+        terms.add(term);
+    }
+    term.reflections = 1;
+    for (std::size_t j = 0; j < light.emitter_count(); ++j) {
+        if (!light.visible(in_light, j)) continue;
+        brdf_for(light.emitters()[j], reflection, surface, brdf);
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double reflected = light.irradiance(in_light, j, b) * brdf[b];
+            leaving[b] += reflected;
+            arriving[b] = reflected * to_camera[b];
+        }
+        term.lamp = light.emitters()[j].index();
+        term.emitter = j;
+        terms.add(term);
+    }
+}
+
+void add_quadrature_terms(const PixelRenderer& pixels, const VolumeIntegrator& water,
+                          const PixelView& view, const SurfaceLight& light, PathTerms& terms) {
+    if (!view.ray) return;
+    const auto bands = static_cast<std::size_t>(pixels.band_count());
+    WeightedTerms of_sample(terms, 1.0 / pixels.samples());
+    Spectrum ignored;
+    for (std::size_t i = 0; i < view.samples.size(); ++i)
+        add_direct_light(pixels.scene(), view.samples[i], light, i, of_sample, ignored);
+    const int turn = terms.turn(k_no_turn, {PathTurn::Kind::camera, view.ray->origin});
+    for (const SeenLamp& lamp : view.lamps)
+        of_sample.add({.lamp = lamp.lamp,
+                       .distance = lamp.distance,
+                       .radiance = lamp.arriving.first(bands),
+                       .turn = turn,
+                       .place = view.ray->at(lamp.distance)});
+    // Light that is scattered before a sample's distance is in that sample's light.
+    std::vector<double> shares(view.weights.size());
+    std::partial_sum(view.weights.rbegin(), view.weights.rend(), shares.rbegin());
+    Spectrum arriving;
+    const std::vector<Lamp>& emitters = *pixels.scene().emitters;
+    water.visit_nodes(*view.ray, view.distances, [&](const VolumeIntegrator::Node& node) {
+        arriving = shares[node.distance] * node.radiance;
+        terms.add({.lamp = emitters[node.emitter].index(),
+                   .scatterings = 1,
+                   .from_water = true,
+                   .distance = node.s,
+                   .radiance = arriving.first(bands),
+                   .turn = turn,
+                   .place = view.ray->at(node.s),
+                   .emitter = node.emitter,
+                   .columns = node.columns,
+                   .concentration = node.concentration});
+    });
+}
+
+}  // namespace uw

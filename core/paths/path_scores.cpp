@@ -1,0 +1,327 @@
+#include "core/paths/path_scores.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/geometry/surface_reflection.h"
+#include "core/paths/lamp_guides.h"
+
+namespace uw {
+
+namespace {
+
+// What a change does not move is found again where it was, to rounding in single precision.
+constexpr double k_same_place = 1e-4;
+
+bool has_same_origin(const Lamp& a, const Lamp& b) {
+    if (a.sunlight() != nullptr && b.sunlight() != nullptr) return *a.sunlight() == *b.sunlight();
+    return a.position() == b.position();
+}
+
+}  // namespace
+
+ChangedScenes::Side::Side(const LitScene& of)
+    : scene(of), attenuation(*of.medium), phases(*of.medium) {}
+
+ChangedScenes::ChangedScenes(const LitScene& scene, std::span<const SceneChange> changes)
+    : bands_(static_cast<std::size_t>(scene.medium->band_count())),
+      constituents_(scene.medium->constituents.size()) {
+    sides_.emplace_back(scene);
+    const auto add = [&](const LitScene& side) {
+        if (static_cast<std::size_t>(side.medium->band_count()) != bands_ ||
+            side.medium->constituents.size() != constituents_)
+            throw UsageError("what the water is made of, or its bands, changes with the number");
+        if (side.emitters->size() != scene.emitters->size())
+            throw UsageError("the number of lamps, or of the points that they consist of, changes");
+        sides_.emplace_back(side);
+        sides_.back().has_same_field = side.field == scene.field;
+        sides_.back().has_same_surfaces = side.surfaces == scene.surfaces;
+    };
+    for (const SceneChange& change : changes) {
+        add(change.less);
+        add(change.more);
+        steps_.push_back(change.step);
+    }
+    for (std::size_t j = 0; j < scene.emitters->size(); ++j)
+        if ((*scene.emitters)[j].index() == first_emitters_.size()) first_emitters_.push_back(j);
+}
+
+PathScores::Corner& PathScores::add_corner() {
+    if (count_ == corners_.size()) corners_.emplace_back();
+    return corners_[count_++];
+}
+
+int PathScores::turn(int before, const PathTurn& turn) {
+    const auto number = static_cast<int>(count_);
+    add_corner();
+    Corner& corner = corners_[static_cast<std::size_t>(number)];
+    corner.scores.assign(scenes_.changes() * scenes_.bands(), 0.0);
+    const Corner* const from =
+        before == k_no_turn ? nullptr : &corners_[static_cast<std::size_t>(before)];
+    place(corner, turn.kind, turn.position, turn.hit, from);
+    if (from == nullptr) return number;
+    std::ranges::copy(from->scores, corner.scores.begin());
+    add_response(*from, corner.in, corner.scores);
+    add_way(from->position, corner.position, corner.scores);
+    return number;
+}
+
+void PathScores::find(const PathTerm& term, std::span<double> scores) {
+    const Corner& from = corners_[static_cast<std::size_t>(term.turn)];
+    const bool is_event = term.hit != nullptr || term.emitter != k_no_emitter;
+    PathTurn::Kind kind = PathTurn::Kind::camera;
+    if (is_event)
+        kind = term.hit != nullptr ? PathTurn::Kind::reflected : PathTurn::Kind::scattered;
+    place(last_, kind, term.place, term.hit, &from, term.concentration);
+    std::ranges::copy(from.scores, scores.begin());
+    add_response(from, last_.in, scores);
+    if (term.columns.empty()) add_way(from.position, last_.position, scores);
+    if (term.emitter != k_no_emitter)
+        add_lamp(term, scores);
+    else if (term.hit != nullptr)
+        add_emission(last_, scores);
+    else
+        add_seen_lamp(term.lamp, scores);
+}
+
+void PathScores::place(Corner& corner, PathTurn::Kind kind, const Point3& position,
+                       const SurfaceHit* hit, const Corner* before,
+                       std::span<const double> concentration) const {
+    corner.kind = kind;
+    corner.position = position;
+    if (before != nullptr) {
+        const Vector3 way = position - before->position;
+        const double length = glm::length(way);
+        corner.in = length > 0 ? way / length : before->in;
+    }
+    corner.hits.clear();
+    corner.concentration.clear();
+    const std::vector<Side>& sides = scenes_.sides_;
+    if (kind == PathTurn::Kind::reflected) {
+        corner.hits.push_back(*hit);
+        for (std::size_t i = 1; i < sides.size(); ++i) {
+            if (sides[i].has_same_surfaces) continue;
+            SurfaceHit& found = corner.hits.emplace_back(*hit);
+            SurfaceHit other;
+            const double length = distance(before->position, position);
+            if (sides[i].scene.surfaces->closest_hit({before->position, corner.in},
+                                                     (1 + k_same_place) * length, other) &&
+                other.distance > (1 - k_same_place) * length)
+                found = other;
+        }
+    }
+    if (kind == PathTurn::Kind::scattered && scenes_.constituents_ > 0) {
+        const std::size_t count = scenes_.constituents_;
+        for (std::size_t i = 0; i < sides.size(); ++i) {
+            if (i > 0 && sides[i].has_same_field) continue;
+            corner.concentration.resize(corner.concentration.size() + count);
+            sides[i].scene.field->sample(position, std::span(corner.concentration).last(count));
+        }
+        // Fields that differ do so by the difference of their values.
+        if (!concentration.empty())
+            for (std::size_t k = 0; k < count; ++k) {
+                const double more = concentration[k] - corner.concentration[k];
+                for (std::size_t i = k; i < corner.concentration.size(); i += count)
+                    corner.concentration[i] += more;
+            }
+    }
+}
+
+namespace {
+
+// The place of a side's own values, where those that share the first side's have none.
+template <class Sides, class Side, class Shares>
+std::size_t place_among(const Sides& sides, const Side& side, const Shares& shares) {
+    if (shares(side)) return 0;
+    std::size_t place = 1;
+    for (const Side* other = &sides[1]; other != &side; ++other)
+        if (!shares(*other)) ++place;
+    return place;
+}
+
+}  // namespace
+
+std::span<const double> PathScores::concentrations(const Side& side, const Corner& corner) const {
+    const std::size_t count = scenes_.constituents_;
+    const std::size_t place =
+        place_among(scenes_.sides_, side, [](const Side& each) { return each.has_same_field; });
+    return std::span(corner.concentration).subspan(place * count, count);
+}
+
+const SurfaceHit& PathScores::hit(const Side& side, const Corner& corner) const {
+    return corner.hits[place_among(scenes_.sides_, side,
+                                   [](const Side& each) { return each.has_same_surfaces; })];
+}
+
+void PathScores::find_column(const Side& side, const Point3& from, const Point3& to,
+                             std::vector<double>& column) const {
+    column.assign(scenes_.constituents_, 0.0);
+    if (!column.empty()) side.scene.field->column(from, to, column);
+}
+
+void PathScores::add_way(const Point3& from, const Point3& to, std::span<double> scores) {
+    const std::size_t bands = scenes_.bands();
+    const double length = distance(from, to);
+    find_column(scenes_.base(), from, to, base_column_);
+    for (std::size_t i = 0; i < scenes_.changes(); ++i) {
+        const auto depths = [&](const Side& side, double sign) {
+            if (!side.has_same_field) find_column(side, from, to, column_);
+            const std::vector<double>& columns = side.has_same_field ? base_column_ : column_;
+            const double factor = -sign / scenes_.steps_[i];
+            for (std::size_t b = 0; b < bands; ++b)
+                scores[i * bands + b] +=
+                    factor * side.attenuation.optical_depth(b, length, columns);
+        };
+        depths(scenes_.more(i), 1);
+        depths(scenes_.less(i), -1);
+    }
+}
+
+template <class Find>
+void PathScores::add_relative(const Find& find, std::span<double> scores) {
+    const std::size_t bands = scenes_.bands();
+    Spectrum value, less, more;
+    find(scenes_.base(), value);
+    for (std::size_t i = 0; i < scenes_.changes(); ++i) {
+        find(scenes_.less(i), less);
+        find(scenes_.more(i), more);
+        for (std::size_t b = 0; b < bands; ++b)
+            if (value[b] > 0)
+                scores[i * bands + b] += (more[b] - less[b]) / (scenes_.steps_[i] * value[b]);
+    }
+}
+
+void PathScores::add_response(const Corner& corner, const Vector3& out, std::span<double> scores) {
+    if (corner.kind != PathTurn::Kind::scattered && corner.kind != PathTurn::Kind::reflected)
+        return;
+    add_relative([&](const Side& side, Spectrum& values) { respond(side, corner, out, values); },
+                 scores);
+}
+
+void PathScores::respond(const Side& side, const Corner& corner, const Vector3& out,
+                         Spectrum& values) {
+    const std::size_t bands = scenes_.bands();
+    if (corner.kind == PathTurn::Kind::reflected) {
+        const SurfaceHit& on = hit(side, corner);
+        const SurfaceSample sample{{corner.position - on.distance * corner.in, corner.in}, on};
+        SurfaceReflection(*side.scene.surfaces, sample, static_cast<int>(bands))
+            .brdf_towards(out, values);
+        const double cosine = std::max(0.0, glm::dot(on.normal, out));
+        for (double& value : values.first(bands)) value *= cosine;
+        return;
+    }
+    const Medium& medium = *side.scene.medium;
+    p_.resize(medium.phase_functions.size());
+    const double h = half_tangent_between(corner.in, out);
+    side.phases.evaluate(std::span(&h, 1), p_);
+    const std::span<const double> concentration = concentrations(side, corner);
+    for (std::size_t b = 0; b < bands; ++b) {
+        double beta = 0;
+        for (std::size_t m = 0; m < p_.size(); ++m) {
+            double scattering = medium.uniform.scattering[m][b];
+            for (std::size_t k = 0; k < concentration.size(); ++k)
+                scattering += concentration[k] * medium.constituents[k].per_unit.scattering[m][b];
+            beta += scattering * p_[m];
+        }
+        values[b] = beta;
+    }
+}
+
+double PathScores::shine(const Side& side, const Corner& corner, std::size_t emitter,
+                         Spectrum& values) {
+    const Lamp& lamp = (*side.scene.emitters)[emitter];
+    const Vector3 to_lamp = lamp.origin(corner.position) - corner.position;
+    const double length = glm::length(to_lamp);
+    const double aside =
+        corner.kind == PathTurn::Kind::scattered ? lamp.aside({corner.position, corner.in}) : 0;
+    const double radius = std::sqrt(length * length + aside);
+    const double light =
+        lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) / lamp.spread(radius);
+    respond(side, corner, to_lamp / length, values);
+    for (std::size_t b = 0; b < scenes_.bands(); ++b) values[b] *= light * lamp.axis_intensity()[b];
+    return radius;
+}
+
+void PathScores::add_lamp(const PathTerm& term, std::span<double> scores) {
+    const std::size_t bands = scenes_.bands();
+    Spectrum value, less, more;
+    shine(scenes_.base(), last_, term.emitter, value);
+    for (std::size_t i = 0; i < scenes_.changes(); ++i) {
+        const double radius_less = shine(scenes_.less(i), last_, term.emitter, less);
+        const double radius_more = shine(scenes_.more(i), last_, term.emitter, more);
+        for (std::size_t b = 0; b < bands; ++b)
+            if (value[b] > 0)
+                scores[i * bands + b] += (more[b] - less[b]) / (scenes_.steps_[i] * value[b]);
+        add_depth(term, i, radius_less, radius_more, scores);
+    }
+}
+
+void PathScores::add_depth(const PathTerm& term, std::size_t change, double radius_less,
+                           double radius_more, std::span<double> scores) {
+    const std::size_t bands = scenes_.bands();
+    const Side& less = scenes_.less(change);
+    const Side& more = scenes_.more(change);
+    const Lamp& lamp_less = (*less.scene.emitters)[term.emitter];
+    const Lamp& lamp_more = (*more.scene.emitters)[term.emitter];
+    const bool is_field_same = less.has_same_field && more.has_same_field;
+    const bool is_same = is_field_same && has_same_origin(lamp_less, lamp_more);
+    double way = 0;  // with the columns of the lamp's light
+    if (!term.columns.empty()) {
+        const Point3& from = corners_[static_cast<std::size_t>(term.turn)].position;
+        way = distance(from, term.place);
+    }
+    if (is_same && !term.columns.empty()) {
+        less_.assign(term.columns.begin(), term.columns.end());
+        more_ = less_;
+    } else {
+        find_column(less, lamp_less.origin(term.place), term.place, less_);
+        if (is_same)
+            more_ = less_;
+        else
+            find_column(more, lamp_more.origin(term.place), term.place, more_);
+        if (!term.columns.empty()) {
+            if (!is_field_same) {
+                const Point3& from = corners_[static_cast<std::size_t>(term.turn)].position;
+                find_column(less, from, term.place, column_);
+                add(less_, column_);
+                find_column(more, from, term.place, column_);
+                add(more_, column_);
+            }
+            // Around the columns that the term was computed with.
+            for (std::size_t k = 0; k < less_.size(); ++k) {
+                const double missing = term.columns[k] - 0.5 * (less_[k] + more_[k]);
+                less_[k] += missing;
+                more_[k] += missing;
+            }
+        }
+    }
+    for (std::size_t b = 0; b < bands; ++b)
+        scores[change * bands + b] -=
+            (more.attenuation.optical_depth(b, way + radius_more, more_) -
+             less.attenuation.optical_depth(b, way + radius_less, less_)) /
+            scenes_.steps_[change];
+}
+
+Spectrum PathScores::emission(const Side& side, const Corner& corner) const {
+    const SurfaceHit& on = hit(side, corner);
+    if (!on.has_material) return {};
+    return side.scene.surfaces->material(on).emission;
+}
+
+void PathScores::add_emission(const Corner& corner, std::span<double> scores) {
+    add_relative([&](const Side& side, Spectrum& values) { values = emission(side, corner); },
+                 scores);
+}
+
+// What a lamp looks like changes with its power alone.
+void PathScores::add_seen_lamp(std::size_t lamp, std::span<double> scores) {
+    const std::size_t emitter = scenes_.first_emitters_[lamp];
+    add_relative(
+        [&](const Side& side, Spectrum& values) {
+            values = (*side.scene.emitters)[emitter].axis_intensity();
+        },
+        scores);
+}
+
+}  // namespace uw

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fit/picture_residuals.h"
+
+namespace uw {
+
+/// Gives pictures the poses that a structure-from-motion program found for their names: COLMAP's
+/// (a model's folder, or its images.txt or images.bin) or nerfstudio's (transforms.json). `images`
+/// is what pictures_called takes, or a folder in which the poses' own names are looked up. A
+/// picture's name is what its path ends with: "left/0001.png" of "dive/left/0001.png". Pictures
+/// without a pose, and poses without a picture in the folder, are passed over, and named or counted
+/// to `say` in one line each. Throws IoError as pictures_called and read_pose_file, UsageError for
+/// files of poses without names, and InputError if no picture has a pose.
+std::vector<ObservedPicture> posed_pictures(const std::filesystem::path& images,
+                                            const std::filesystem::path& poses,
+                                            const std::function<void(const std::string&)>& say);
+
+}  // namespace uw

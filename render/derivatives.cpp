@@ -1,0 +1,304 @@
+#include "render/derivatives.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "core/base/available_memory.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
+#include "core/light/integrator_table.h"
+#include "core/passes/derivative_images.h"
+#include "media/volumes/voxel_gradient.h"
+#include "media/water/water_model.h"
+#include "render/exposure.h"
+
+namespace uw {
+
+namespace {
+
+// `name`: what the image is differentiated by, for messages.
+void refuse_other_images(const AssembledScene& scene, const std::string& name) {
+    const auto refuse = [&](const char* what) {
+        throw UsageError(fmt::format("derivative {}: {}", printable(name), what));
+    };
+    const LayerPlan plan = layer_plan(scene.image, {});
+    if (plan.is_provided(Layer::forward))
+        refuse(
+            "forward scatter blurs the finished image, and how is not differentiated; remove "
+            "water.forward_scatter, or set its K to 0");
+    if (plan.is_provided(Layer::snow))
+        refuse("marine snow is drawn particle by particle and has none; remove water.snow");
+    if (Exposure(scene).part_count() > 0)
+        refuse(
+            "they are those of a single moment, not of the mean over an exposure; set "
+            "render.shutter and camera.line_time to 0");
+    if (scene.desc().render.output == RenderDesc::Output::paper)
+        refuse("they are those of radiance; remove render.output");
+    if (colour_groups_of(scene.desc()).size() > 1)
+        refuse(
+            "the port refracts each band by itself, and they are those of one ray for all; give "
+            "its indices as numbers");
+    using enum RenderDesc::Integrator;
+    const RenderDesc::Integrator integrator = scene.desc().render.integrator;
+    if (integrator != volume && integrator != path)
+        refuse("they are computed by the integrators volume and path; choose one of them");
+}
+
+void refuse_other_changes(const std::string& name, const SceneDesc& desc,
+                          const SceneDesc& changed) {
+    const auto refuse = [&](const char* what) {
+        throw UsageError(fmt::format("derivative {}: {}", printable(name), what));
+    };
+    for (const char* const key : {"camera", "cameras", "rig", "render", "frames", "sensors"})
+        if (name.starts_with(key))
+            refuse(
+                "only of the water, volumes, lamps and surfaces; where the camera sees a point has "
+                "derivatives by differences of Camera.project");
+    if (changed.water.surface != desc.water.surface)
+        refuse("the water's surface moves all light; take differences of images");
+    if (changed.geometry.size() != desc.geometry.size())
+        refuse("it changes what surfaces there are");
+    for (std::size_t i = 0; i < desc.geometry.size(); ++i) {
+        GeometryDesc other = changed.geometry[i];
+        other.reflectance = desc.geometry[i].reflectance;
+        if (other != desc.geometry[i])
+            refuse("it moves surfaces, and what they hide with them; take differences of images");
+    }
+}
+
+/// What scores need of an assembled scene, kept while the renderer goes on to others.
+struct KeptScene {
+    explicit KeptScene(const AssembledScene& scene)
+        : medium(scene.water.medium),
+          emitters(scene.emitters),
+          field(scene.field),
+          surfaces(scene.surfaces),
+          water_surface(scene.water_surface) {}
+
+    LitScene lit() const {
+        LitScene lit{&medium, field.get(), surfaces.get(), &emitters};
+        lit.water_surface = water_surface ? &*water_surface : nullptr;
+        return lit;
+    }
+
+    Medium medium;
+    std::vector<Lamp> emitters;
+    std::shared_ptr<const ConcentrationField> field;
+    std::shared_ptr<const Surfaces> surfaces;
+    std::optional<WaterSurface> water_surface;
+};
+
+/// What `by_paths(pixels, window, draws)` or `by_quadrature(pixels, water, window)` makes of the
+/// renderer's scene, as its light requires.
+template <class ByPaths, class ByQuadrature>
+auto by_light(Renderer& renderer, const DerivativeOptions& options, const ByPaths& by_paths,
+              const ByQuadrature& by_quadrature) {
+    const AssembledScene& scene = renderer.assemble();
+    const CameraDesc& camera = scene.desc().camera;
+    const PixelWindow window =
+        options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
+    if (scene.desc().render.integrator == RenderDesc::Integrator::path ||
+        layer_plan(scene.image, {}).is_provided(Layer::multiple)) {
+        const LightTransport transport = make_path_transport(scene, scene.scattering);
+        return by_paths(pixel_renderer(scene, transport), window,
+                        Draws{samples_of(scene.desc().render), options.seed});
+    }
+    renderer.splat();
+    const LightTransport transport = renderer.make_transport();
+    const auto& water = dynamic_cast<const VolumeIntegrator&>(*transport.integrator);
+    return by_quadrature(pixel_renderer(scene, transport), water, window);
+}
+
+std::vector<float> derivative_images(Renderer& renderer, std::span<const SceneChange> changes,
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress) {
+    const ChangedScenes changed(renderer.assemble().lit(), changes);
+    return by_light(
+        renderer, options,
+        [&](const PixelRenderer& pixels, const PixelWindow& window, const Draws& draws) {
+            return path_derivatives(pixels, changed, window, draws, progress);
+        },
+        [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
+            return quadrature_derivatives(pixels, water, changed, window, progress);
+        });
+}
+
+}  // namespace
+
+std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress) {
+    refuse_other_images(renderer.assemble(), changes.empty() ? "" : changes.front().name);
+    const ImageScene itself = renderer.scene();
+    std::vector<std::unique_ptr<const KeptScene>> kept;
+    std::vector<SceneChange> lit;
+    const auto assembled = [&](const std::string& name, const ImageScene& image) {
+        refuse_other_changes(name, itself.desc(), image.desc());
+        renderer.set_scene(image);
+        kept.push_back(std::make_unique<const KeptScene>(renderer.assemble()));
+        return kept.back()->lit();
+    };
+    for (const ChangedScene& change : changes) {
+        const LitScene less = assembled(change.name, change.less);
+        lit.push_back({less, assembled(change.name, change.more), change.step});
+    }
+    renderer.set_scene(itself);
+    return derivative_images(renderer, lit, options, progress);
+}
+
+namespace {
+
+constexpr std::string_view k_concentration = "concentration.";
+constexpr std::string_view k_small = "water.particles.small", k_large = "water.particles.large";
+
+/// The uniform water's phase function by itself: its parts, per unit of scattering.
+std::vector<Spectrum> shares_of_scattering(const Medium& medium) {
+    const Spectrum total = medium.uniform.total_scattering();
+    std::vector<Spectrum> shares = medium.uniform.scattering;
+    for (std::size_t b = 0; b < medium.wavelengths_nm.size(); ++b) {
+        if (!(total[b] > 0))
+            throw UsageError(
+                fmt::format("derivative water.scattering: the water does not scatter at {:g} nm, "
+                            "so that its phase function is unknown; give it some scattering",
+                            medium.wavelengths_nm[b]));
+        for (Spectrum& share : shares) share[b] /= total[b];
+    }
+    return shares;
+}
+
+ParticleDerivative derivative_by_particles(const AssembledScene& scene, const std::string& name) {
+    try {
+        return particle_derivative(scene.desc().water, scene.desc().volumes,
+                                   name == k_small ? WaterParticles::small : WaterParticles::large);
+    } catch (const UsageError& fault) {
+        throw UsageError(fmt::format("derivative {}: {}", name, fault.what()));
+    }
+}
+
+std::size_t constituent_called(const std::string& name, const Medium& medium) {
+    const std::string_view wanted = std::string_view(name).substr(k_concentration.size());
+    const auto found = std::ranges::find(medium.constituents, wanted, &Constituent::name);
+    if (found == medium.constituents.end()) {
+        std::string there;
+        for (const Constituent& constituent : medium.constituents)
+            there += (there.empty() ? "" : ", ") + printable(constituent.name);
+        throw UsageError(fmt::format("derivative {}: the volumes hold {}", printable(name),
+                                     there.empty() ? "nothing" : there));
+    }
+    return static_cast<std::size_t>(found - medium.constituents.begin());
+}
+
+/// The medium with one more of what `name` says: everything is linear in it.
+Medium with_one_more(const std::string& name, const AssembledScene& scene) {
+    Medium medium = scene.water.medium;
+    const auto bands = static_cast<std::size_t>(medium.band_count());
+    if (name.starts_with(k_concentration)) {
+        OpticalCoefficients& unit = medium.constituents[constituent_called(name, medium)].per_unit;
+        unit.absorption *= 2.0;
+        for (Spectrum& b : unit.scattering) b *= 2.0;
+    } else if (name == k_small || name == k_large) {
+        ParticleDerivative particles = derivative_by_particles(scene, name);
+        // The water's own phase functions, and those of the particles beyond them.
+        const std::size_t phases = particles.phase_functions.size();
+        medium.phase_functions = std::move(particles.phase_functions);
+        medium.uniform.scattering.resize(phases);
+        medium.uniform.absorption += particles.per_ppm.absorption;
+        for (std::size_t m = 0; m < phases; ++m)
+            medium.uniform.scattering[m] += particles.per_ppm.scattering[m];
+        for (Constituent& constituent : medium.constituents)
+            constituent.per_unit.scattering.resize(phases);
+    } else if (name == "water.absorption") {
+        for (double& a : medium.uniform.absorption.first(bands)) a += 1;
+    } else if (name == "water.scattering") {
+        const std::vector<Spectrum> shares = shares_of_scattering(medium);
+        for (std::size_t m = 0; m < shares.size(); ++m) medium.uniform.scattering[m] += shares[m];
+    } else {
+        throw UsageError(
+            fmt::format("derivative '{}': unknown; use water.absorption, water.scattering, "
+                        "water.particles.small, water.particles.large or concentration.NAME of a "
+                        "constituent",
+                        printable(name)));
+    }
+    return medium;
+}
+
+}  // namespace
+
+std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::string> names,
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress) {
+    const AssembledScene& scene = renderer.assemble();
+    refuse_other_images(scene, names.empty() ? "" : names.front());
+    std::vector<Medium> media;
+    media.reserve(names.size());
+    std::vector<SceneChange> changes;
+    for (const std::string& name : names) {
+        media.push_back(with_one_more(name, scene));
+        SceneChange change{scene.lit(), scene.lit(), 1.0};
+        change.more.medium = &media.back();
+        changes.push_back(change);
+    }
+    return derivative_images(renderer, changes, options, progress);
+}
+
+namespace {
+
+// Copies of the gradient for the parts of an image may take this much memory, or two.
+constexpr double k_gradient_bytes = 256e6;
+constexpr std::size_t k_most_gradients = 16;
+
+}  // namespace
+
+std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
+                                     std::span<const double> weights,
+                                     const DerivativeOptions& options,
+                                     const ShareCallback& progress) {
+    const AssembledScene& scene = renderer.assemble();
+    refuse_other_images(scene, fmt::format("volumes[{}].array", volume));
+    const std::vector<VolumeDesc>& volumes = scene.desc().volumes;
+    if (volume >= volumes.size() || volumes[volume].array == nullptr)
+        throw UsageError(
+            "derivatives: only of the voxels of volumes in memory; read the file's grid as an "
+            "array and add that to the scene");
+    const std::array<std::size_t, 3> size = volumes[volume].array->size;
+    const double bytes = 8.0 * static_cast<double>(size[0] * size[1] * size[2]);
+    const auto parts = static_cast<std::size_t>(
+        std::clamp(k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_most_gradients}));
+    require_memory(bytes * static_cast<double>(parts), "the derivatives by voxel need",
+                   "use fewer voxels");
+    std::vector<std::unique_ptr<FieldGradient>> gradients;
+    std::vector<const VoxelGradient*> by_part;
+    for (std::size_t i = 0; i < parts; ++i) {
+        auto part = std::make_unique<VoxelGradient>(scene.volumes[volume].grids.front(), size);
+        by_part.push_back(part.get());
+        gradients.push_back(std::move(part));
+    }
+    const auto weights_of = [&](const PixelWindow& window) {
+        return PixelWeights{window, scene.desc().water.bands_nm.size(), weights};
+    };
+    by_light(
+        renderer, options,
+        [&](const PixelRenderer& pixels, const PixelWindow& window, const Draws& draws) {
+            path_gradient(pixels, weights_of(window), draws, gradients, progress);
+        },
+        [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
+            std::optional<Draws> draws;
+            if (scene.desc().render.quality != RenderDesc::Quality::exact)
+                draws = {.seed = options.seed};
+            quadrature_gradient(pixels, water, weights_of(window), draws, gradients, progress);
+        });
+    std::vector<float> sums(by_part.front()->values().size());
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+        double sum = 0;
+        for (const VoxelGradient* part : by_part) sum += part->values()[i];
+        sums[i] = static_cast<float>(sum);
+    }
+    return sums;
+}
+
+}  // namespace uw
