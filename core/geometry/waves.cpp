@@ -117,9 +117,13 @@ class WaterWaves::Shape {
 
     virtual WavePoint at(double u, double v) const = 0;
     virtual WaveStatistics statistics() const = 0;
-    /// How far [m] a ray from a place below the surface stays below it for sure; 0: it may not.
-    virtual double clear_below(const Point3& /*from*/, const Vector3& /*direction*/) const {
-        return 0;
+    /// Parts of a ray from a place below the surface [m].
+    struct Stretch {
+        double clear = 0;  // so far it stays below the surface for sure
+        double next = std::numeric_limits<double>::infinity();  // before, nothing else is known
+    };
+    virtual Stretch clear_below(const Point3& /*from*/, const Vector3& /*direction*/) const {
+        return {};
     }
 
     double lowest = 0, highest = 0;
@@ -289,7 +293,8 @@ struct HeightLattice {
     }
 
     /// As Shape::clear_below: block by block, as long as the ray stays below all of each.
-    double clear_below(double u, double v, double z, const Vector3& direction) const {
+    WaterWaves::Shape::Stretch clear_below(double u, double v, double z,
+                                           const Vector3& direction) const {
         constexpr int k_most_blocks = 256;
         constexpr double k_never = std::numeric_limits<double>::infinity();
         const double blocks_per_metre = 1 / (block * step);
@@ -317,16 +322,16 @@ struct HeightLattice {
         };
         Axis across(u * blocks_per_metre, direction.x * blocks_per_metre, lows.width());
         Axis along(v * blocks_per_metre, direction.y * blocks_per_metre, lows.height());
-        double clear = 0;
+        double clear = 0, end = 0;
         for (int i = 0; i < k_most_blocks; ++i) {
-            const double end = std::min(across.to_next, along.to_next);
+            end = std::min(across.to_next, along.to_next);
             if (end == k_never) break;  // straight up or down
             const double highest = z + direction.z * (direction.z > 0 ? end : clear);
             if (!(highest < lows(across.wrapped(), along.wrapped()))) break;
             clear = end;
             (across.to_next < along.to_next ? across : along).advance();
         }
-        return clear;
+        return {clear, end};
     }
 
     /// Bounds over all cells, by the convex hull of their Bezier points.
@@ -458,7 +463,7 @@ class RandomSea : public WaterWaves::Shape {
     }
 
     WavePoint at(double u, double v) const override { return lattice_.at(u, v); }
-    double clear_below(const Point3& from, const Vector3& direction) const override {
+    Stretch clear_below(const Point3& from, const Vector3& direction) const override {
         return lattice_.clear_below(from.x, from.y, from.z, direction);
     }
 
@@ -628,7 +633,7 @@ class ImageHeights : public WaterWaves::Shape {
     WavePoint at(double u, double v) const override {
         return lattice_.at(u - 0.5 * step_, v - 0.5 * step_);
     }
-    double clear_below(const Point3& from, const Vector3& direction) const override {
+    Stretch clear_below(const Point3& from, const Vector3& direction) const override {
         return lattice_.clear_below(from.x - 0.5 * step_, from.y - 0.5 * step_, from.z, direction);
     }
 
@@ -744,13 +749,19 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
         side = -1;
         gap = {-gap.value, -gap.slope};
     }
+    double asked = side < 0 ? s : std::numeric_limits<double>::infinity();
     while (s <= end) {
+        double clear = 0;
+        if (s >= asked) {
+            const Shape::Stretch stretch = shape.clear_below(origin + s * direction, direction);
+            clear = stretch.clear;
+            asked = s + stretch.next;
+        }
         // Neither its slope nor its curvature can close the gap before so far.
         const double root = std::sqrt(gap.slope * gap.slope + 2 * most_curvature * gap.value);
         const double by_curvature =
             gap.slope < 0 ? 2 * gap.value / (root - gap.slope)
                           : (most_curvature > 0 ? (gap.slope + root) / most_curvature : farthest);
-        const double clear = side < 0 ? shape.clear_below(origin + s * direction, direction) : 0;
         const double step = std::max({gap.value / most_slope, by_curvature, clear, k_least_step});
         const Gap next = gap_at(s + step);
         if (next.value <= 0) {
