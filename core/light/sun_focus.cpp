@@ -235,10 +235,10 @@ double SunFocus::factor(const Place& place) const {
     };
     double across = 0, down = 0;
     const std::array<std::size_t, 2> columns = neighbours(u, across), rows = neighbours(v, down);
-    const double level = k_slices * std::sqrt(std::min(1.0, place.depth / extent_.depth));
-    const auto k = std::min(static_cast<std::size_t>(level), std::size_t{k_slices - 1});
-    const double from = depth_of(k), to = depth_of(k + 1);
-    const auto share = static_cast<float>(std::clamp((place.depth - from) / (to - from), 0.0, 1.0));
+    // Slices lie at the squares of whole numbers (depth_of), and k^2 and (k + 1)^2 around this one.
+    const double square = k_slices * k_slices * std::min(1.0, place.depth / extent_.depth);
+    const int k = std::min(static_cast<int>(std::sqrt(square)), k_slices - 1);
+    const auto share = static_cast<float>((square - k * k) / (2 * k + 1));
     const auto s = static_cast<float>(across), t = static_cast<float>(down);
     const auto value = [&](const Grid2D<float>& slice) {
         const auto along = [&](std::size_t row) {
@@ -247,7 +247,8 @@ double SunFocus::factor(const Place& place) const {
         };
         return (1 - t) * along(rows[0]) + t * along(rows[1]);
     };
-    return static_cast<double>((1 - share) * value(slices_[k]) + share * value(slices_[k + 1]));
+    return static_cast<double>((1 - share) * value(slices_[static_cast<std::size_t>(k)]) +
+                               share * value(slices_[static_cast<std::size_t>(k) + 1]));
 }
 
 }  // namespace uw
