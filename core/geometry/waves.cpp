@@ -544,12 +544,13 @@ class RandomSea : public WaterWaves::Shape {
              &Node::huv},
         }};
         const Transform transform(count_);
-        for (const auto& [factor, member] : fields) {
+        for (const std::pair<Factor, double Node::*>& field : fields) {
             throw_if_stopped();
             const std::span<const double> values = transform([&](int i, int row) {
-                return half(i, row) * factor(i * step_k_, signed_index(row) * step_k_);
+                return half(i, row) * field.first(i * step_k_, signed_index(row) * step_k_);
             });
-            for (std::size_t n = 0; n < values.size(); ++n) lattice_.nodes[n].*member = values[n];
+            for (std::size_t n = 0; n < values.size(); ++n)
+                lattice_.nodes[n].*field.second = values[n];
         }
     }
     int signed_index(int row) const { return row <= count_ / 2 ? row : row - count_; }
