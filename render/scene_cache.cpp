@@ -128,9 +128,10 @@ SceneCache::KeptGlow SceneCache::make_glow(const VolumeDesc& desc, const SceneDe
             fmt::format("{}: '{}' gives off no light that is seen; check the unit of its values{}",
                         emission.where, emission.grid,
                         emission.stimulus ? ", and how fast the water moves" : ""));
-    return {desc, scene.water.bands_nm, FileStamps(files_of(desc)),
-            std::make_shared<GlowingVolume>(std::move(field), light, std::move(parts)),
-            std::move(loaded.warnings)};
+    return {
+        desc, scene.water.bands_nm, FileStamps(files_of(desc)),
+        std::make_shared<GlowingVolume>(GlowingVolume{std::move(field), light, std::move(parts)}),
+        std::move(loaded.warnings)};
 }
 
 std::vector<SceneGlow> SceneCache::glows(const SceneDesc& scene,

@@ -62,13 +62,13 @@ std::vector<double> times_in(const GltfDocument& document, std::vector<const Jso
     try {
         inspect_gltf(document, {});
         std::ranges::sort(inputs);
-        inputs.erase(std::ranges::unique(inputs).begin(), inputs.end());
+        inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
         GltfBytes bytes(document);
         std::vector<double> times;
         for (const Json* input : inputs)
             std::ranges::copy(bytes.floats(*input, 1), std::back_inserter(times));
         std::ranges::sort(times);
-        times.erase(std::ranges::unique(times).begin(), times.end());
+        times.erase(std::unique(times.begin(), times.end()), times.end());
         return times;
     } catch (const std::exception&) {
         return {};

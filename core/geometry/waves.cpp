@@ -117,14 +117,32 @@ class WaterWaves::Shape {
 
     virtual WavePoint at(double u, double v) const = 0;
     virtual WaveStatistics statistics() const = 0;
-    /// How far [m] a ray from a place below the surface stays below it for sure; 0: it may not.
-    virtual double clear_below(const Point3& /*from*/, const Vector3& /*direction*/) const {
-        return 0;
+    /// What a part of the surface does not exceed.
+    struct Bounds {
+        double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+        double steepest = 0;     // of the slope
+        double most_curved = 0;  // of the second derivative in any direction [1/m]
+
+        void include(const Bounds& other) {
+            lowest = std::min(lowest, other.lowest);
+            highest = std::max(highest, other.highest);
+            steepest = std::max(steepest, other.steepest);
+            most_curved = std::max(most_curved, other.most_curved);
+        }
+    };
+    /// What lies before a ray [m].
+    struct Stretch {
+        double clear = 0;                // so far it stays below the surface for sure
+        double end = 0;                  // from there to here,
+        const Bounds* bounds = nullptr;  // these hold
+    };
+    /// `is_below`: the ray begins below the surface; else nothing is clear.
+    virtual Stretch stretch(const Point3& /*from*/, const Vector3& /*direction*/,
+                            bool /*is_below*/) const {
+        return {0, std::numeric_limits<double>::infinity(), &bounds};
     }
 
-    double lowest = 0, highest = 0;
-    double steepest = 0;     // of the slope
-    double most_curved = 0;  // of the second derivative in any direction [1/m]
+    Bounds bounds;  // of all of it
 };
 
 namespace {
@@ -134,7 +152,7 @@ class SineWaves : public WaterWaves::Shape {
   public:
     SineWaves(const std::vector<SineWaveDesc>& descs, const std::optional<double>& depth,
               double time) {
-        double curvature = 0, motion = 0, motion_curvature = 0;
+        double highest = 0, steepest = 0, curvature = 0, motion = 0, motion_curvature = 0;
         for (const SineWaveDesc& desc : descs) {
             const double k = k_full_turn / desc.wavelength, angle = desc.direction * k_degree;
             // Whole turns are left out while numbers are small.
@@ -147,10 +165,10 @@ class SineWaves : public WaterWaves::Shape {
             motion += desc.steepness * desc.amplitude * k;
             motion_curvature += desc.steepness * desc.amplitude * k * k;
         }
-        lowest = -highest;
         // By the chain rule: water moves by a map whose derivative is at least 1 - motion.
         steepest /= 1 - motion;
-        most_curved = (curvature + steepest * motion_curvature) / squared(1 - motion);
+        bounds = {-highest, highest, steepest,
+                  (curvature + steepest * motion_curvature) / squared(1 - motion)};
         moves_ = motion > 0;
     }
 
@@ -261,8 +279,9 @@ struct HeightLattice {
     };
     double step = 0;     // [m]
     Grid2D<Node> nodes;  // x along u, y along v
-    int block = 1;       // cells along the edge of a square whose least height is known
-    Grid2D<double> lows;
+    using Bounds = WaterWaves::Shape::Bounds;
+    int block = 1;  // cells along the edge of a square whose bounds are known
+    Grid2D<Bounds> blocks;
 
     WavePoint at(double u, double v) const {
         const double per_step = 1 / step;
@@ -288,8 +307,9 @@ struct HeightLattice {
         return point;
     }
 
-    /// As Shape::clear_below: block by block, as long as the ray stays below all of each.
-    double clear_below(double u, double v, double z, const Vector3& direction) const {
+    /// As Shape::stretch: block by block, as long as the ray stays below all of each.
+    WaterWaves::Shape::Stretch stretch(double u, double v, double z, const Vector3& direction,
+                                       bool is_below) const {
         constexpr int k_most_blocks = 256;
         constexpr double k_never = std::numeric_limits<double>::infinity();
         const double blocks_per_metre = 1 / (block * step);
@@ -315,80 +335,62 @@ struct HeightLattice {
                 return std::clamp(static_cast<int>(index - turns * count), 0, count - 1);
             }
         };
-        Axis across(u * blocks_per_metre, direction.x * blocks_per_metre, lows.width());
-        Axis along(v * blocks_per_metre, direction.y * blocks_per_metre, lows.height());
+        Axis across(u * blocks_per_metre, direction.x * blocks_per_metre, blocks.width());
+        Axis along(v * blocks_per_metre, direction.y * blocks_per_metre, blocks.height());
         double clear = 0;
         for (int i = 0; i < k_most_blocks; ++i) {
+            const Bounds& bounds = blocks(across.wrapped(), along.wrapped());
             const double end = std::min(across.to_next, along.to_next);
-            if (end == k_never) break;  // straight up or down
             const double highest = z + direction.z * (direction.z > 0 ? end : clear);
-            if (!(highest < lows(across.wrapped(), along.wrapped()))) break;
+            if (!is_below || end == k_never || !(highest < bounds.lowest))
+                return {clear, end, &bounds};
             clear = end;
             (across.to_next < along.to_next ? across : along).advance();
         }
-        return clear;
+        return {clear, clear, &blocks(across.wrapped(), along.wrapped())};
     }
 
-    /// Bounds over all cells, by the convex hull of their Bezier points.
-    void bound(WaterWaves::Shape& shape) {
-        struct Bounds {
-            double lowest = 1e300, highest = -1e300, slope = 0, curvature = 0;
-        };
-        std::vector<Bounds> of_rows(static_cast<std::size_t>(nodes.height()));
-        parallel_for(of_rows.size(), [&](std::size_t row) {
-            Bounds& bounds = of_rows[row];
-            for (int column = 0; column < nodes.width(); ++column) {
-                const Bezier p = bezier(column, static_cast<int>(row));
-                for (const auto& line : p) {
-                    bounds.lowest = std::min(bounds.lowest, *std::ranges::min_element(line));
-                    bounds.highest = std::max(bounds.highest, *std::ranges::max_element(line));
-                }
-                double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
-                for (std::size_t j = 0; j < 4; ++j)
-                    for (std::size_t i = 0; i < 4; ++i) {
-                        if (i < 3) u = std::max(u, std::abs(p[j][i + 1] - p[j][i]));
-                        if (j < 3) v = std::max(v, std::abs(p[j + 1][i] - p[j][i]));
-                        if (i < 2)
-                            uu = std::max(uu, std::abs(p[j][i + 2] - 2 * p[j][i + 1] + p[j][i]));
-                        if (j < 2)
-                            vv = std::max(vv, std::abs(p[j + 2][i] - 2 * p[j + 1][i] + p[j][i]));
-                        if (i < 3 && j < 3)
-                            uv = std::max(uv, std::abs(p[j + 1][i + 1] - p[j + 1][i] - p[j][i + 1] +
-                                                       p[j][i]));
-                    }
-                bounds.slope = std::max(bounds.slope, 3 / step * std::hypot(u, v));
-                // The norm of a matrix is at most the root of the sum of its squares.
-                bounds.curvature =
-                    std::max(bounds.curvature,
-                             std::sqrt(squared(6 * uu) + squared(6 * vv) + 2 * squared(9 * uv)) /
-                                 squared(step));
-            }
+    /// Bounds of blocks and of all, by the convex hull of cells' Bezier points.
+    Bounds bound() {
+        block = 16;
+        while (nodes.width() % block != 0 || nodes.height() % block != 0) block /= 2;
+        blocks.assign(nodes.width() / block, nodes.height() / block);
+        parallel_for(static_cast<std::size_t>(blocks.height()), [&](std::size_t line) {
+            const int first_row = static_cast<int>(line) * block;
+            for (int row = first_row; row < first_row + block; ++row)
+                for (int column = 0; column < nodes.width(); ++column)
+                    blocks(column / block, static_cast<int>(line))
+                        .include(bounds_of_cell(column, row));
         });
-        shape.lowest = 1e300;
-        shape.highest = -1e300;
-        for (const Bounds& bounds : of_rows) {
-            shape.lowest = std::min(shape.lowest, bounds.lowest);
-            shape.highest = std::max(shape.highest, bounds.highest);
-            shape.steepest = std::max(shape.steepest, bounds.slope);
-            shape.most_curved = std::max(shape.most_curved, bounds.curvature);
-        }
-        bound_blocks();
+        Bounds all;
+        for (const Bounds& bounds : blocks) all.include(bounds);
+        return all;
     }
 
   private:
-    void bound_blocks() {
-        block = 16;
-        while (nodes.width() % block != 0 || nodes.height() % block != 0) block /= 2;
-        lows.assign(nodes.width() / block, nodes.height() / block, 1e300);
-        parallel_for(static_cast<std::size_t>(lows.height()), [&](std::size_t line) {
-            const int first_row = static_cast<int>(line) * block;
-            for (int row = first_row; row < first_row + block; ++row)
-                for (int column = 0; column < nodes.width(); ++column) {
-                    double& low = lows(column / block, static_cast<int>(line));
-                    for (const auto& points : bezier(column, row))
-                        low = std::min(low, *std::ranges::min_element(points));
-                }
-        });
+    Bounds bounds_of_cell(int column, int row) const {
+        const Bezier p = bezier(column, row);
+        Bounds bounds;
+        for (const auto& line : p) {
+            bounds.lowest = std::min(bounds.lowest, *std::ranges::min_element(line));
+            bounds.highest = std::max(bounds.highest, *std::ranges::max_element(line));
+        }
+        double u = 0, v = 0, uu = 0, uv = 0, vv = 0;
+        for (std::size_t j = 0; j < 4; ++j)
+            for (std::size_t i = 0; i < 4; ++i) {
+                if (i < 3) u = std::max(u, std::abs(p[j][i + 1] - p[j][i]));
+                if (j < 3) v = std::max(v, std::abs(p[j + 1][i] - p[j][i]));
+                if (i < 2) uu = std::max(uu, std::abs(p[j][i + 2] - 2 * p[j][i + 1] + p[j][i]));
+                if (j < 2) vv = std::max(vv, std::abs(p[j + 2][i] - 2 * p[j + 1][i] + p[j][i]));
+                if (i < 3 && j < 3)
+                    uv = std::max(uv,
+                                  std::abs(p[j + 1][i + 1] - p[j + 1][i] - p[j][i + 1] + p[j][i]));
+            }
+        bounds.steepest = 3 / step * std::hypot(u, v);
+        // The norm of a matrix is at most the root of the sum of its squares.
+        bounds.most_curved =
+            std::sqrt(squared(6 * uu) + squared(6 * vv) + 2 * squared(9 * uv)) / squared(step);
+        return bounds;
     }
 
     /// The four nodes around a place, given in steps, and where it is between them, 0..1.
@@ -454,12 +456,12 @@ class RandomSea : public WaterWaves::Shape {
         lattice_.step = desc.tile / count_;
         lattice_.nodes.assign(count_, count_);
         set_heights(desc.seed, depth, time);
-        lattice_.bound(*this);
+        bounds = lattice_.bound();
     }
 
     WavePoint at(double u, double v) const override { return lattice_.at(u, v); }
-    double clear_below(const Point3& from, const Vector3& direction) const override {
-        return lattice_.clear_below(from.x, from.y, from.z, direction);
+    Stretch stretch(const Point3& from, const Vector3& direction, bool is_below) const override {
+        return lattice_.stretch(from.x, from.y, from.z, direction, is_below);
     }
 
     WaveStatistics statistics() const override {
@@ -542,12 +544,13 @@ class RandomSea : public WaterWaves::Shape {
              &Node::huv},
         }};
         const Transform transform(count_);
-        for (const auto& [factor, member] : fields) {
+        for (const std::pair<Factor, double Node::*>& field : fields) {
             throw_if_stopped();
             const std::span<const double> values = transform([&](int i, int row) {
-                return half(i, row) * factor(i * step_k_, signed_index(row) * step_k_);
+                return half(i, row) * field.first(i * step_k_, signed_index(row) * step_k_);
             });
-            for (std::size_t n = 0; n < values.size(); ++n) lattice_.nodes[n].*member = values[n];
+            for (std::size_t n = 0; n < values.size(); ++n)
+                lattice_.nodes[n].*field.second = values[n];
         }
     }
     int signed_index(int row) const { return row <= count_ / 2 ? row : row - count_; }
@@ -621,15 +624,16 @@ class ImageHeights : public WaterWaves::Shape {
                 throw InputError(fmt::format("{}: {}: has a height that is not a finite number",
                                              where, desc.file.string()));
         difference();
-        lattice_.bound(*this);
+        bounds = lattice_.bound();
     }
 
     // Pixels are where their centres are.
     WavePoint at(double u, double v) const override {
         return lattice_.at(u - 0.5 * step_, v - 0.5 * step_);
     }
-    double clear_below(const Point3& from, const Vector3& direction) const override {
-        return lattice_.clear_below(from.x - 0.5 * step_, from.y - 0.5 * step_, from.z, direction);
+    Stretch stretch(const Point3& from, const Vector3& direction, bool is_below) const override {
+        return lattice_.stretch(from.x - 0.5 * step_, from.y - 0.5 * step_, from.z, direction,
+                                is_below);
     }
 
     WaveStatistics statistics() const override {
@@ -690,15 +694,15 @@ WavePoint WaterWaves::at(double u, double v) const {
 }
 
 double WaterWaves::lowest() const {
-    return shape_->lowest;
+    return shape_->bounds.lowest;
 }
 
 double WaterWaves::highest() const {
-    return shape_->highest;
+    return shape_->bounds.highest;
 }
 
 double WaterWaves::steepest() const {
-    return shape_->steepest;
+    return shape_->bounds.steepest;
 }
 
 WaveStatistics WaterWaves::statistics() const {
@@ -720,13 +724,14 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
                                                         point.slope_v * direction.y)};
     };
     // No crossing is where the ray is below or above all heights.
+    const Shape::Bounds& all = shape.bounds;
     double s = 0, end = farthest;
     if (direction.z != 0) {
-        const double to_lowest = (shape.lowest - origin.z) / direction.z;
-        const double to_highest = (shape.highest - origin.z) / direction.z;
+        const double to_lowest = (all.lowest - origin.z) / direction.z;
+        const double to_highest = (all.highest - origin.z) / direction.z;
         s = std::max(0.0, std::min(to_lowest, to_highest));
         end = std::min(end, std::max(to_lowest, to_highest));
-    } else if (origin.z < shape.lowest || origin.z > shape.highest) {
+    } else if (origin.z < all.lowest || origin.z > all.highest) {
         return std::nullopt;
     }
     // Surfaces that are flat touch their bounds.
@@ -735,23 +740,36 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
     if (s > end) return std::nullopt;
 
     const double level = std::hypot(direction.x, direction.y);
-    const double most_slope = std::abs(direction.z) + shape.steepest * level;
-    const double most_curvature = shape.most_curved * level * level;
-    if (!(most_slope > 0)) return std::nullopt;  // along calm water, in it
+    if (!(std::abs(direction.z) + all.steepest * level > 0))
+        return std::nullopt;  // along calm water, in it
     Gap gap = gap_at(s);
     // One that begins on the surface is on the side to which it goes.
     if (gap.value < 0 || (gap.value == 0 && gap.slope < 0)) {
         side = -1;
         gap = {-gap.value, -gap.slope};
     }
+    double bounded = s, most_slope = 0, most_curvature = 0;  // up to there, of the gap
     while (s <= end) {
+        if (s >= bounded) {
+            const Shape::Stretch ahead = shape.stretch(origin + s * direction, direction, side < 0);
+            bounded = s + ahead.end + k_least_step;
+            most_slope = std::abs(direction.z) + ahead.bounds->steepest * level;
+            most_curvature = ahead.bounds->most_curved * level * level;
+            if (ahead.clear > 0) {
+                s += ahead.clear;
+                if (s > end) break;
+                gap = gap_at(s);
+                if (gap.value <= 0) return s;  // by rounding
+            }
+        }
         // Neither its slope nor its curvature can close the gap before so far.
         const double root = std::sqrt(gap.slope * gap.slope + 2 * most_curvature * gap.value);
         const double by_curvature =
             gap.slope < 0 ? 2 * gap.value / (root - gap.slope)
                           : (most_curvature > 0 ? (gap.slope + root) / most_curvature : farthest);
-        const double clear = side < 0 ? shape.clear_below(origin + s * direction, direction) : 0;
-        const double step = std::max({gap.value / most_slope, by_curvature, clear, k_least_step});
+        const double by_slope = most_slope > 0 ? gap.value / most_slope : farthest;
+        const double step =
+            std::max(k_least_step, std::min(bounded - s, std::max(by_slope, by_curvature)));
         const Gap next = gap_at(s + step);
         if (next.value <= 0) {
             const double crossing = s + step * gap.value / (gap.value - next.value);

@@ -85,6 +85,10 @@ double Lamp::focus(const Point3& x) const {
     return focus_ ? focus_->at(x) : 1;
 }
 
+void Lamp::focus(const Ray& ray, std::span<const double> s, std::span<double> values) const {
+    if (focus_) focus_->apply(ray, s, values);
+}
+
 Lamp Lamp::brightened(double factor) const {
     Lamp lamp = *this;
     for (double& value : lamp.axis_intensity_) value *= factor;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -115,6 +116,8 @@ class Lamp {
     bool is_focused() const { return focus_ != nullptr; }
     /// By what its light at `x` is multiplied where waves focus it (SunFocus); else 1.
     double focus(const Point3& x) const;
+    /// Multiplies `values` by it, each at its distance `s` along a ray.
+    void focus(const Ray& ray, std::span<const double> s, std::span<double> values) const;
 
     /// Whether it is a mirror image, above the surface.
     bool is_mirrored() const { return mirror_.has_value(); }

@@ -26,6 +26,12 @@ struct Beam {
     float flux = 0;                  // relative to what calm water lets through
 };
 
+/// The greatest whole number <= x, which fits an int.
+double whole_below(double x) {
+    const double whole = static_cast<int>(x);
+    return whole > x ? whole - 1 : whole;
+}
+
 /// Slopes of beams, summed by flux.
 struct SlopeSum {
     double u = 0, v = 0, flux = 0;
@@ -121,6 +127,8 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
     direction_ = mean.x * surface.across() + mean.y * surface.along() + mean.z * surface.up();
     shift_u_ = -mean.x / mean.z;
     shift_v_ = -mean.y / mean.z;
+    first_u_ = (extent.u - 0.5 * extent.side) * texels + 0.5;
+    first_v_ = (extent.v - 0.5 * extent.side) * texels + 0.5;
     const auto mean_u = static_cast<float>(texels * shift_u_),
                mean_v = static_cast<float>(texels * shift_v_);
     slices_.resize(k_slices + 1);
@@ -188,37 +196,59 @@ double SunFocus::slide(const Vector3& direction) const {
     return std::hypot(v.x + v.z * shift_u_, v.y + v.z * shift_v_);
 }
 
-// Linear between the texels around, and between the depths above and below.
-double SunFocus::at(const Point3& x) const {
-    const Vector3 place = surface_.coordinates(x);
-    const double depth = -place.z;
-    if (!(depth > 0)) return 1;
+SunFocus::Place SunFocus::place(const Vector3& at) const {
     const double texels = resolution_ / extent_.side;
-    const double u = (place.x - depth * shift_u_ - extent_.u + 0.5 * extent_.side) * texels;
-    const double v = (place.y - depth * shift_v_ - extent_.v + 0.5 * extent_.side) * texels;
-    if (!extent_.is_periodic && !(u > 0 && v > 0 && u < resolution_ && v < resolution_)) return 1;
-    const double column = std::floor(u - 0.5), line = std::floor(v - 0.5);
-    const double s = u - 0.5 - column, t = v - 0.5 - line;
-    const auto neighbours = [&](double first) {
-        const int i = static_cast<int>(first);
-        return extent_.is_periodic
-                   ? std::array{wrapped(i, resolution_), wrapped(i + 1, resolution_)}
-                   : std::array{std::max(i, 0), std::min(i + 1, resolution_ - 1)};
+    return {(at.x + at.z * shift_u_) * texels, (at.y + at.z * shift_v_) * texels, -at.z};
+}
+
+double SunFocus::at(const Point3& x) const {
+    return factor(place(surface_.coordinates(x)));
+}
+
+void SunFocus::apply(const Ray& ray, std::span<const double> s, std::span<double> values) const {
+    const Place from = place(surface_.coordinates(ray.origin));
+    const Place per_metre = place(surface_.in_plane(ray.direction));
+    for (std::size_t i = 0; i < s.size(); ++i)
+        values[i] *= factor({from.u + s[i] * per_metre.u, from.v + s[i] * per_metre.v,
+                             from.depth + s[i] * per_metre.depth});
+}
+
+// Linear between the texels around, and between the depths above and below.
+double SunFocus::factor(const Place& place) const {
+    if (!(place.depth > 0)) return 1;
+    double u = place.u - first_u_, v = place.v - first_v_;
+    if (extent_.is_periodic) {
+        u -= resolution_ * std::floor(u / resolution_);
+        v -= resolution_ * std::floor(v / resolution_);
+    } else if (!(u > -0.5 && v > -0.5 && u < resolution_ - 0.5 && v < resolution_ - 0.5)) {
+        return 1;
+    }
+    // The texels whose centres lie below and above.
+    const auto neighbours = [&](double at, double& share) {
+        int first = static_cast<int>(whole_below(at));
+        share = at - first;
+        int second = first + 1;
+        if (first < 0) first = extent_.is_periodic ? resolution_ - 1 : 0;
+        if (first >= resolution_) first = extent_.is_periodic ? 0 : resolution_ - 1;  // by rounding
+        if (second >= resolution_) second = extent_.is_periodic ? 0 : resolution_ - 1;
+        return std::array{static_cast<std::size_t>(first), static_cast<std::size_t>(second)};
     };
-    const std::array<int, 2> columns = neighbours(column), lines = neighbours(line);
-    const double level = k_slices * std::sqrt(std::min(1.0, depth / extent_.depth));
-    const auto k =
-        std::min(static_cast<std::size_t>(level), static_cast<std::size_t>(k_slices - 1));
-    const double from = depth_of(k), to = depth_of(k + 1);
-    const double share = std::clamp((depth - from) / (to - from), 0.0, 1.0);
+    double across = 0, down = 0;
+    const std::array<std::size_t, 2> columns = neighbours(u, across), rows = neighbours(v, down);
+    // Slices lie at the squares of whole numbers (depth_of), and k^2 and (k + 1)^2 around this one.
+    const double square = k_slices * k_slices * std::min(1.0, place.depth / extent_.depth);
+    const int k = std::min(static_cast<int>(std::sqrt(square)), k_slices - 1);
+    const auto share = static_cast<float>((square - k * k) / (2 * k + 1));
+    const auto s = static_cast<float>(across), t = static_cast<float>(down);
     const auto value = [&](const Grid2D<float>& slice) {
-        const auto along = [&](int row) {
-            return (1 - s) * static_cast<double>(slice(columns[0], row)) +
-                   s * static_cast<double>(slice(columns[1], row));
+        const auto along = [&](std::size_t row) {
+            const std::span<const float> line = slice.row(static_cast<int>(row));
+            return (1 - s) * line[columns[0]] + s * line[columns[1]];
         };
-        return (1 - t) * along(lines[0]) + t * along(lines[1]);
+        return (1 - t) * along(rows[0]) + t * along(rows[1]);
     };
-    return (1 - share) * value(slices_[k]) + share * value(slices_[k + 1]);
+    return static_cast<double>((1 - share) * value(slices_[static_cast<std::size_t>(k)]) +
+                               share * value(slices_[static_cast<std::size_t>(k) + 1]));
 }
 
 }  // namespace uw

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/base/grid2d.h"
+#include "core/base/ray.h"
 #include "core/base/vector_math.h"
 #include "core/geometry/water_surface.h"
 
@@ -39,12 +41,22 @@ class SunFocus {
     const Vector3& direction() const { return direction_; }
     /// The factor at a point in the world, >= 0; 1 above the water.
     double at(const Point3& x) const;
+    /// Multiplies each of `values` by the factor at its distance `s` [m] along a ray.
+    void apply(const Ray& ray, std::span<const double> s, std::span<double> values) const;
     /// Side of a texel [m].
     double texel() const { return extent_.side / resolution_; }
     /// By how many metres the place in the map changes per metre along a unit vector, level.
     double slide(const Vector3& direction) const;
 
   private:
+    /// Where light of the beams' direction enters [texels, from the surface's origin], and how far
+    /// below [m].
+    struct Place {
+        double u = 0, v = 0, depth = 0;
+    };
+    /// Of a place in the surface's coordinates; linear in these.
+    Place place(const Vector3& at) const;
+    double factor(const Place& place) const;
     double depth_of(std::size_t slice) const;
     void blur(Grid2D<float>& slice, double radius) const;
 
@@ -53,6 +65,7 @@ class SunFocus {
     int resolution_;
     Vector3 direction_{};
     double shift_u_ = 0, shift_v_ = 0;  // of light with this direction per metre of depth
+    double first_u_ = 0, first_v_ = 0;  // of the first texel's centre, as in Place
     std::vector<Grid2D<float>> slices_;
 };
 

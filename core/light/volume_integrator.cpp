@@ -162,7 +162,7 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
             const double radius = passage.radius(s);
             const Point3 x = ray.at(s);
             const double relative =
-                (panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.origin(x))) * lamp.focus(x);
+                panel.evenly ? 1.0 : lamp.relative_intensity(x - lamp.origin(x));
             nodes.s.push_back(s);
             nodes.radius.push_back(radius);
             nodes.weight.push_back(node.weight * length * relative / lamp.spread(radius));
@@ -407,6 +407,7 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
                                   std::span<const double> distances, std::span<const double> breaks,
                                   const ConcentrationProfile& profile, ScatterNodes& nodes) const {
     const Lamp& source = (*scene_.emitters)[lamp];
+    const std::size_t first = nodes.size();
     std::size_t next = 0;
     std::size_t knot = 0;
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
@@ -439,6 +440,7 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
                    relative == 1 && source.has_even_core(), next},
                   nodes);
     }
+    source.focus(ray, std::span(nodes.s).subspan(first), std::span(nodes.weight).subspan(first));
 }
 
 }  // namespace uw

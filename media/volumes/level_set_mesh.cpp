@@ -87,7 +87,7 @@ TriangleMesh mesh_of(openvdb::FloatGrid& values, const Affine& upright_from_inde
     const Matrix3 normal_from_index = glm::transpose(upright_from_index.inverse().linear());
     for (const openvdb::Vec3s& point : points) {
         const openvdb::Vec3d index(point);
-        const Point3 at = upright_from_index * Point3(index.x(), index.y(), index.z());
+        const Point3 at = upright_from_index * Point3{index.x(), index.y(), index.z()};
         const Vector3 across = normal_from_index * gradient.at(index);
         const double length = glm::length(across);
         for (int axis = 0; axis < 3; ++axis) {

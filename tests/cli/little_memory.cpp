@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit slow
 // A machine, or a share of one, with little memory.
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit slow
 // Sets as the programs that they are written for find their files and take them apart: Kalibr's
 // kalibr_bagcreater, nerfstudio's parser of transforms.json, pykitti's loader of odometry.
 #include <fmt/format.h>

@@ -3,6 +3,7 @@
 import os
 import pathlib
 import subprocess
+import warnings
 
 import pytest
 
@@ -41,3 +42,20 @@ def run_program(*arguments, **options):
     """What `uwvdb` prints; it has to succeed."""
     return subprocess.run([PROGRAM, *map(str, arguments)], check=True, capture_output=True,
                           text=True, **options).stdout
+
+
+def expect_same_file(file, renderer, folder):
+    """A scene rendered here, and by the command line: the same bytes, pixels and header."""
+    scene = uwvdb.Scene.load(file)
+    choice = ["--camera", scene.cameras[0]] if scene.cameras else []
+    ours, theirs = folder / "ours.exr", folder / "theirs.exr"
+    run_program("render", file, "-o", theirs, "--size", "12x8", "--quality", "draft", "--layers",
+                "all", "--precision", "float", "--threads", "1", "--quiet", *choice)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", uwvdb.SceneWarning)
+        image = renderer.render(scene, "all", "draft", size=(12, 8),
+                                camera=scene.cameras[0] if scene.cameras else None)
+    image.save(ours, precision="float")
+    if scene.cameras:
+        theirs = theirs.with_name(f"theirs.{scene.cameras[0]}.exr")
+    assert ours.read_bytes() == theirs.read_bytes()

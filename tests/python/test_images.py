@@ -10,31 +10,12 @@ import numpy as np
 import pytest
 
 import uwvdb
-from conftest import SCENES, run_program
-
-def example_scenes():
-    return sorted(path.relative_to(SCENES).with_suffix("").as_posix()
-                  for path in SCENES.rglob("*.yaml")
-                  if path.stem != "houdini")  # which is for a file of its user's
+from conftest import SCENES, expect_same_file, run_program
 
 
-@pytest.mark.parametrize("name", example_scenes())
+@pytest.mark.parametrize("name", ["dive", "plume", "shallows", "stereo"])  # test_slow: all of them
 def test_files_are_those_of_the_command_line(tmp_path, renderer, name):
-    file = SCENES / f"{name}.yaml"
-    scene = uwvdb.Scene.load(file)
-    choice = ["--camera", scene.cameras[0]] if scene.cameras else []
-    ours, theirs = tmp_path / "ours.exr", tmp_path / "theirs.exr"
-    run_program("render", file, "-o", theirs, "--size", "12x8", "--quality", "draft", "--layers",
-                "all", "--precision", "float", "--threads", "1", "--quiet", *choice)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", uwvdb.SceneWarning)
-        image = renderer.render(scene, "all", "draft", size=(12, 8),
-                                camera=scene.cameras[0] if scene.cameras else None)
-    image.save(ours, precision="float")
-    if scene.cameras:
-        theirs = theirs.with_name(f"theirs.{scene.cameras[0]}.exr")
-    # Pixels and header.
-    assert ours.read_bytes() == theirs.read_bytes()
+    expect_same_file(SCENES / f"{name}.yaml", renderer, tmp_path)
 
 
 def test_frames_and_windows_are_those_of_the_command_line(tmp_path, renderer):

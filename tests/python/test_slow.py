@@ -13,9 +13,19 @@ import numpy as np
 import pytest
 
 import uwvdb
-from conftest import ROOT
+from conftest import ROOT, SCENES, expect_same_file
 
 BUILD = pathlib.Path(os.environ["UWVDB_BUILD"])
+
+
+EXAMPLES = sorted(path.relative_to(SCENES).with_suffix("").as_posix()
+                  for path in SCENES.rglob("*.yaml")
+                  if path.stem != "houdini")  # which is for a file of its user's
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_files_are_those_of_the_command_line(tmp_path, renderer, name):
+    expect_same_file(SCENES / f"{name}.yaml", renderer, tmp_path)
 
 
 def test_validation(scene):

@@ -1,4 +1,4 @@
-# ctest labels: unit
+# ctest labels: unit slow
 """What docs/starts.md tells newcomers to type, typed in."""
 
 import os

@@ -1,4 +1,4 @@
-// ctest labels: analytic metamorphic
+// ctest labels: analytic metamorphic slow
 // A port with indices by wavelength: every band is what a port with its numbers shows.
 #include "camera/lateral_colour.h"
 

@@ -1,4 +1,4 @@
-// ctest labels: analytic
+// ctest labels: analytic slow
 // The paper's figures as scenes: what Sedlazeck and Koch (2011) conclude from them, as numbers.
 // docs/gallery.md quotes the numbers this prints.
 #include <gtest/gtest.h>
