@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit slow
 // What a set has besides its formats' files.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// ctest labels: unit analytic
+// ctest labels: unit analytic slow
 //
 // A bar that moves while the shutter is open, against the closed form of its image.
 #include <gtest/gtest.h>
