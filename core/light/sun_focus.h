@@ -55,7 +55,7 @@ class SunFocus {
     struct Place {
         double u = 0, v = 0, depth = 0;
     };
-    /// Of a place in the surface's coordinates; linear in these.
+    /// `at` is given in the surface's coordinates; the result is linear in them.
     Place place(const Vector3& at) const;
     double factor(const Place& place) const;
     double depth_of(std::size_t slice) const;
