@@ -201,6 +201,7 @@ class SineWaves : public WaterWaves::Shape {
             sum.height_variance += variance;
             sum.slopes.along += variance * squared(wave.k * wave.cos);
             sum.slopes.across += variance * squared(wave.k * wave.sin);
+            sum.slopes.covariance += variance * squared(wave.k) * wave.cos * wave.sin;
         }
         return sum;
     }
@@ -472,6 +473,7 @@ class RandomSea : public WaterWaves::Shape {
                 sum.height_variance += variance;
                 sum.slopes.along += variance * squared(i * step_k_);
                 sum.slopes.across += variance * squared(j * step_k_);
+                sum.slopes.covariance += variance * squared(step_k_) * i * j;
             }
         return sum;
     }
@@ -645,6 +647,7 @@ class ImageHeights : public WaterWaves::Shape {
             sum.height_variance += squared(node.h - mean) / count;
             sum.slopes.along += squared(node.hu) / count;
             sum.slopes.across += squared(node.hv) / count;
+            sum.slopes.covariance += node.hu * node.hv / count;
         }
         return sum;
     }

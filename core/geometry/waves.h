@@ -45,6 +45,7 @@ double wave_spreading(double angle, double s);
 /// Variances of the slope of a sea's surface, dimensionless.
 struct SlopeVariance {
     double along = 0, across = 0;  ///< the wind, or u and v
+    double covariance = 0;         ///< of both
 
     double total() const { return along + across; }
 };

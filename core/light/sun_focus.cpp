@@ -32,27 +32,44 @@ double whole_below(double x) {
     return whole > x ? whole - 1 : whole;
 }
 
-/// Slopes of beams, summed by flux.
-struct SlopeSum {
-    double u = 0, v = 0, flux = 0;
-
-    void add(double slope_u, double slope_v, double beam_flux) {
-        u += beam_flux * slope_u;
-        v += beam_flux * slope_v;
-        flux += beam_flux;
-    }
+/// Light that enters the water through a slope of its surface.
+struct Entry {
+    Vector3 down;  // in which it goes on, in the surface's coordinates, unit
+    double flux =
+        0;  // through a level area, relative to the irradiance across the light in the air
 };
 
-/// Down the mean slope of all rows, in the surface's coordinates, unit; `calm` if there is no
-/// light.
-Vector3 mean_direction(const std::vector<SlopeSum>& rows, const Vector3& calm) {
-    SlopeSum all;
-    for (const SlopeSum& row : rows) {
-        all.u += row.u;
-        all.v += row.v;
-        all.flux += row.flux;
-    }
-    return all.flux > 0 ? glm::normalize(Vector3{all.u / all.flux, all.v / all.flux, -1}) : calm;
+/// None where the slope lies in the waves' own shadow. `in_air`: of the light, in the surface's
+/// coordinates; `normal`: out of the water.
+std::optional<Entry> enter(const WaterSurface& surface, const Vector3& in_air,
+                           const Vector3& normal) {
+    const double towards = -glm::dot(in_air, normal);
+    if (!(towards > 0)) return std::nullopt;
+    const std::optional<Vector3> down = surface.refracted_into_water(in_air, normal);
+    if (!down || !(down->z < 0)) return std::nullopt;
+    return Entry{*down, towards / normal.z * (1 - surface.reflectance_from_air(towards))};
+}
+
+/// The mean by flux of the directions in which light goes on, unit: over slopes that are normally
+/// distributed with the waves' variances (Cox and Munk 1954), so that it is the same at all moments
+/// of a sea, and what is known of a sun (its shadow maps) holds while waves move.
+Vector3 mean_direction(const WaterSurface& surface, const Vector3& in_air) {
+    constexpr int k_steps = 24;  // to each side; the integrand is smooth but where shadow begins
+    constexpr double k_reach = 4.5;  // standard deviations
+    const SlopeVariance slopes = surface.waves()->statistics().slopes;
+    // The factor of the covariance matrix that is lower triangular.
+    const double u_by_x = std::sqrt(slopes.along);
+    const double v_by_x = u_by_x > 0 ? slopes.covariance / u_by_x : 0;
+    const double v_by_y = std::sqrt(std::max(0.0, slopes.across - v_by_x * v_by_x));
+    Vector3 sum{0};
+    for (int j = -k_steps; j <= k_steps; ++j)
+        for (int i = -k_steps; i <= k_steps; ++i) {
+            const double x = k_reach * i / k_steps, y = k_reach * j / k_steps;
+            const WavePoint point{0, u_by_x * x, v_by_x * x + v_by_y * y};
+            if (const std::optional<Entry> entry = enter(surface, in_air, point.normal()))
+                sum += std::exp(-0.5 * (x * x + y * y)) * entry->flux * entry->down;
+        }
+    return glm::normalize(sum);
 }
 
 /// A column or line of a map that repeats after `count` of them.
@@ -99,38 +116,31 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
     };
     Grid2D<Beam> beams;
     beams.assign(beams_across, beams_across);
-    std::vector<SlopeSum> rows(static_cast<std::size_t>(beams_across));
-    parallel_for(rows.size(), [&](std::size_t row) {
-        throw_if_stopped();
-        for (int i = 0; i < beams_across; ++i) {
-            const WavePoint wave =
-                waves.at(place(extent.u, i), place(extent.v, static_cast<int>(row)));
-            const Vector3 normal = wave.normal();
-            const double towards = -glm::dot(in_air, normal);
-            if (!(towards > 0)) continue;  // it lies in the waves' own shadow
-            const std::optional<Vector3> down = surface.refracted_into_water(in_air, normal);
-            if (!down || !(down->z < 0)) continue;
-            Beam& beam = beams(i, static_cast<int>(row));
-            const double slope_u = -down->x / down->z, slope_v = -down->y / down->z;
-            // The light enters at the wave's height, from where it goes down to depth 0.
-            beam.u = static_cast<float>(texels * wave.height * slope_u);
-            beam.v = static_cast<float>(texels * wave.height * slope_v);
-            beam.slope_u = static_cast<float>(texels * slope_u);
-            beam.slope_v = static_cast<float>(texels * slope_v);
-            beam.flux = static_cast<float>(towards / normal.z *
-                                           (1 - surface.reflectance_from_air(towards)) /
-                                           (calm_flux * k_beams_of_texel * k_beams_of_texel));
-            rows[row].add(slope_u, slope_v, static_cast<double>(beam.flux));
-        }
-    });
-    const Vector3 mean = mean_direction(rows, surface.in_plane(surface.into_water(direction)));
+    const Vector3 mean = mean_direction(surface, in_air);
     direction_ = mean.x * surface.across() + mean.y * surface.along() + mean.z * surface.up();
     shift_u_ = -mean.x / mean.z;
     shift_v_ = -mean.y / mean.z;
     first_u_ = (extent.u - 0.5 * extent.side) * texels + 0.5;
     first_v_ = (extent.v - 0.5 * extent.side) * texels + 0.5;
-    const auto mean_u = static_cast<float>(texels * shift_u_),
-               mean_v = static_cast<float>(texels * shift_v_);
+    parallel_for(static_cast<std::size_t>(beams_across), [&](std::size_t row) {
+        throw_if_stopped();
+        for (int i = 0; i < beams_across; ++i) {
+            const WavePoint wave =
+                waves.at(place(extent.u, i), place(extent.v, static_cast<int>(row)));
+            const std::optional<Entry> entry = enter(surface, in_air, wave.normal());
+            if (!entry) continue;
+            const Vector3& down = entry->down;
+            Beam& beam = beams(i, static_cast<int>(row));
+            const double slope_u = -down.x / down.z, slope_v = -down.y / down.z;
+            // The light enters at the wave's height, from where it goes down to depth 0.
+            beam.u = static_cast<float>(texels * wave.height * slope_u);
+            beam.v = static_cast<float>(texels * wave.height * slope_v);
+            beam.slope_u = static_cast<float>(texels * (slope_u - shift_u_));
+            beam.slope_v = static_cast<float>(texels * (slope_v - shift_v_));
+            beam.flux =
+                static_cast<float>(entry->flux / (calm_flux * k_beams_of_texel * k_beams_of_texel));
+        }
+    });
     slices_.resize(k_slices + 1);
     const double radius = 0.5 * angle / surface.n();  // of the disc in the water, near the zenith
     parallel_for(slices_.size(), [&](std::size_t k) {
@@ -145,8 +155,8 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
         for (int j = 0; j < beams_across; ++j) {
             for (int i = 0; i < beams_across; ++i) {
                 const Beam& beam = beams(i, j);
-                const SplineWeights across = place_in(i, beam.u, beam.slope_u - mean_u);
-                const SplineWeights down = place_in(j, beam.v, beam.slope_v - mean_v);
+                const SplineWeights across = place_in(i, beam.u, beam.slope_u);
+                const SplineWeights down = place_in(j, beam.v, beam.slope_v);
                 for (std::size_t l = 0; l < 3; ++l) {
                     const std::span<float> line = slice.row(down.texels[l]);
                     const float flux = beam.flux * down.weights[l];

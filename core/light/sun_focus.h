@@ -17,7 +17,7 @@ namespace uw {
 /// A regular grid of beams meets the waves, nine for each texel, and is refracted by them. Where
 /// each crosses a level plane its flux is shared out among the nine texels around, and so at a
 /// series of depths, which lie closer near the surface. Between depths the factor is linear along
-/// the beams' mean direction. What they differ from it, by a few degrees, moves light to where it
+/// light's mean direction. What beams differ from it, by a few degrees, moves light to where it
 /// goes, but counts neither for scattering angles nor for lengths.
 class SunFocus {
   public:
@@ -36,8 +36,9 @@ class SunFocus {
     SunFocus(const WaterSurface& surface, const Vector3& direction, double angle,
              const Extent& extent, int resolution);
 
-    /// In which the beams travel in the water in the mean by flux, world, unit: flatter than below
-    /// calm water where the sun is low, since slopes that face it catch more and turn it less.
+    /// In which light travels in the water in the mean, world, unit: flatter than below calm water
+    /// where the sun is low, since slopes that face it catch more and turn it less. By the waves'
+    /// statistics: the same at any time.
     const Vector3& direction() const { return direction_; }
     /// The factor at a point in the world, >= 0; 1 above the water.
     double at(const Point3& x) const;
@@ -54,7 +55,7 @@ class SunFocus {
     struct Place {
         double u = 0, v = 0, depth = 0;
     };
-    /// Of a place in the surface's coordinates; linear in these.
+    /// `at` is given in the surface's coordinates; the result is linear in them.
     Place place(const Vector3& at) const;
     double factor(const Place& place) const;
     double depth_of(std::size_t slice) const;

@@ -20,8 +20,8 @@ namespace uw {
 /// results on the number of threads. Throws InputError if there is not enough memory, and
 /// Interrupted.
 ///
-/// Of light scattered or reflected once: the same sums over the same nodes as the image's,
-/// differentiated term by term.
+/// The derivatives of light that was scattered or reflected once are the image's own sums over its
+/// own nodes, differentiated term by term.
 std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
                                           const VolumeIntegrator& water,
                                           const ChangedScenes& scenes, const PixelWindow& window,
@@ -32,8 +32,8 @@ struct Draws {
     int samples = 1, seed = 0;  ///< >= 1, >= 0
 };
 
-/// Of all light: means over random paths, without bias. `pixels`: with paths in their light
-/// transport.
+/// The derivatives of all light are means over random paths, without bias. `pixels` must have paths
+/// in their light transport.
 std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedScenes& scenes,
                                     const PixelWindow& window, const Draws& draws,
                                     const ShareCallback& progress);

@@ -59,8 +59,8 @@ struct PathTerm {
     Point3 place{};                      // of its last event: scattered, reflected or emitted
     const SurfaceHit* hit = nullptr;     // there; null in the water
     std::size_t emitter = k_no_emitter;  // which of LitScene::emitters lights it
-    // Of light that was scattered once, by constituent: what it was computed with, the columns of
-    // its whole way [unit m] and what is at `place` [unit]. Empty: as the field has them.
+    // What light that was scattered once was computed with, by constituent: the columns of its
+    // whole way [unit m], and the concentrations at `place` [unit]. If empty, they are the field's.
     std::span<const double> columns{}, concentration{};
 };
 

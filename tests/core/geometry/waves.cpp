@@ -439,6 +439,17 @@ TEST(Waves, RaysThatMissThemDoNotCross) {
     EXPECT_FALSE(waves.intersect(on, waves.at(0.3, 0.2).normal(), 0.05));
 }
 
+// All slopes of one wave lie along it.
+TEST(Waves, SlopesOfOneWaveCovary) {
+    WavesDesc desc;
+    desc.shape = std::vector<SineWaveDesc>{
+        {.amplitude = 0.1, .wavelength = 2 * k_wave_pi, .direction = 120}};
+    const SlopeVariance slopes = WaterWaves(desc, 0).statistics().slopes;
+    EXPECT_NEAR(slopes.total(), 0.005, 1e-12);
+    EXPECT_NEAR(slopes.covariance,
+                0.005 * std::cos(2 * k_wave_pi / 3) * std::sin(2 * k_wave_pi / 3), 1e-12);
+}
+
 TEST(Waves, SlopesAreComparedWithCoxAndMunks) {
     // Their fit of both together has 0.00512 in the place of the sum, 0.00508.
     EXPECT_NEAR(cox_munk_slopes(10).total(), 0.003 + 0.00512 * 10, 0.0005);

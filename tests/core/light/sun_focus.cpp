@@ -179,40 +179,43 @@ TEST(SunFocus, KeepsTheLightThatEnters) {
     EXPECT_NEAR(at_surface, 1, 0.05);
 }
 
-// Of what enters through one wave, summed along it here: by Snell's and Fresnel's laws at each
-// slope, through the area that faces the sun.
+// The mean of what enters, summed here by Snell's and Fresnel's laws over slopes along x that are
+// normally distributed, through the area that faces the sun.
 TEST(SunFocus, LightTravelsAsTheSlopesRefractIt) {
     constexpr double k_amplitude = 0.06, k_wavelength = 2, k_altitude = 12;  // [degrees]
-    const double k = 2 * pi / k_wavelength, altitude = k_altitude * pi / 180;
+    const double deviation = 2 * pi / k_wavelength * k_amplitude / std::sqrt(2.0);
+    const double altitude = k_altitude * pi / 180;
     const Vector3 in_air(std::cos(altitude), -std::sin(altitude), 0);
-    const WaterSurface surface = surface_of(one_wave(k_amplitude, k_wavelength));
-    const SunFocus focus(surface, in_air, 0, {.side = 8, .is_periodic = true, .depth = 4}, 256);
-    double flux = 0, aside = 0, calm = 0;
-    constexpr int k_slopes = 20000;
-    const auto entering = [&](double slope, double& down_slope) {
+    const auto focus_at = [&](double time) {
+        return SunFocus(surface_of(one_wave(k_amplitude, k_wavelength), time), in_air, 0,
+                        {.side = 8, .is_periodic = true, .depth = 4}, 64);
+    };
+    const SunFocus focus = focus_at(0);
+    Vector3 sum{0};
+    const auto entering = [&](double slope) {
         const double tilt = std::atan(slope);  // the surface rises along x
         const double from_normal = pi / 2 - altitude - tilt;
-        if (!(std::cos(from_normal) > 0)) return 0.0;
+        if (!(std::cos(from_normal) > 0)) return Vector3{0};
         const double refracted = std::asin(std::sin(from_normal) / k_n);
         const double s = std::sin(from_normal - refracted) / std::sin(from_normal + refracted);
         const double p = std::tan(from_normal - refracted) / std::tan(from_normal + refracted);
-        down_slope = std::tan(refracted + tilt);
-        return std::cos(from_normal) / std::cos(tilt) * (1 - (s * s + p * p) / 2);
+        const double flux = std::cos(from_normal) / std::cos(tilt) * (1 - (s * s + p * p) / 2);
+        return flux * Vector3{std::sin(refracted + tilt), -std::cos(refracted + tilt), 0};
     };
+    constexpr int k_slopes = 20000;
     for (int i = 0; i < k_slopes; ++i) {
-        const double u = (i + 0.5) * k_wavelength / k_slopes;
-        double slope = 0;
-        const double part = entering(k_amplitude * k * std::sin(k * u), slope);
-        flux += part;
-        aside += part * slope;
+        const double x = 12.0 * (i + 0.5) / k_slopes - 6;
+        sum += std::exp(-0.5 * x * x) * entering(deviation * x);
     }
-    const double mean = aside / flux;
+    const Vector3 mean = glm::normalize(sum);
     const Vector3 direction = focus.direction();
-    EXPECT_NEAR(direction.x / -direction.y, mean, 1e-3);  // 384 beams along the wave
-    EXPECT_NEAR(direction.z, 0, 1e-6);
+    // Its sum has 49 steps, and ends at 4.5 standard deviations.
+    EXPECT_NEAR(glm::distance(direction, mean), 0, 1e-3);
     EXPECT_NEAR(glm::length(direction), 1, 1e-12);
-    entering(0, calm);
-    EXPECT_GT(mean, calm + 0.05);  // flatter than below calm water
+    // Flatter than below calm water by some degrees.
+    EXPECT_GT(direction.y, glm::normalize(entering(0)).y + 0.03);
+    // What is known of the sun holds while waves move.
+    EXPECT_EQ(focus_at(0.7).direction(), direction);
 
     // A level plane gets the same light as by calm water's direction.
     const Sunlight sunlight =
