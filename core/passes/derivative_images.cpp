@@ -148,7 +148,11 @@ class WorthOfTerms final : public PathTerms {
             gradient_.add(term, worth_);
             return;
         }
-        kept_.push_back({term, size, worth_});
+        // What the term refers to of the ray is not there any more when it is taken.
+        PathTerm kept = term;
+        kept.radiance = kept.columns = kept.concentration = {};
+        kept_.push_back({kept, size});
+        kept_worth_.insert(kept_worth_.end(), worth_.begin(), worth_.end());
         total_ += size;
     }
 
@@ -156,22 +160,23 @@ class WorthOfTerms final : public PathTerms {
     struct Kept {
         PathTerm term;
         double size;
-        std::vector<double> worth;
     };
 
     void take_kept() {
         constexpr double k_of_ray = 8;
         const double step = total_ / k_of_ray;
         double next = kept_.empty() ? 0 : random_->next() * step, before = 0;
-        for (Kept& kept : kept_) {
-            before += kept.size;
+        for (std::size_t i = 0; i < kept_.size(); ++i) {
+            before += kept_[i].size;
             int times = 0;
             for (; next < before; next += step) ++times;
             if (times == 0) continue;
-            for (double& worth : kept.worth) worth *= times * step / kept.size;
-            gradient_.add(kept.term, kept.worth);
+            for (std::size_t b = 0; b < worth_.size(); ++b)
+                worth_[b] = kept_worth_[i * worth_.size() + b] * (times * step / kept_[i].size);
+            gradient_.add(kept_[i].term, worth_);
         }
         kept_.clear();
+        kept_worth_.clear();
         total_ = 0;
     }
 
@@ -179,6 +184,7 @@ class WorthOfTerms final : public PathTerms {
     std::vector<double> factors_, worth_;
     std::optional<PathRandom> random_;  // none: all terms are taken
     std::vector<Kept> kept_;
+    std::vector<double> kept_worth_;  // [kept * bands + band]
     double total_ = 0;
 };
 
