@@ -15,6 +15,7 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "core/base/error.h"
@@ -359,9 +360,7 @@ class RendererObject : public RunClient {
     py::array_t<float> derivatives(const SceneObject& scene, const std::vector<Change>& changes,
                                    const py::dict& settings, const py::object& progress) {
         const Wanted wanted = wanted_of(settings);
-        std::vector<ChangedScene> changed;
-        for (const auto& [name, less, more, step] : changes)
-            changed.push_back({name, image_of(*less, wanted), image_of(*more, wanted), step});
+        const std::vector<ChangedScene> changed = changed_of(changes, wanted);
         const ImageScene itself = image_of(scene, wanted);
         const CameraDesc& camera = itself.desc().camera;
         const PixelWindow window =
@@ -374,24 +373,38 @@ class RendererObject : public RunClient {
                       static_cast<py::ssize_t>(itself.desc().water.bands_nm.size())});
     }
 
-    /// The derivatives of a number by the values of the array of a volume, from those by the light
-    /// of the image's pixels (rows, columns, bands).
-    py::array_t<float> voxel_derivatives(
-        const SceneObject& scene, std::size_t volume,
+    /// The derivatives of a number from those by the light of the image's pixels (rows, columns,
+    /// bands): by changes, by the values of the arrays of some volumes, and by the texels of the
+    /// textures of some entries of geometry.
+    py::tuple gradient(
+        const SceneObject& scene, const std::vector<Change>& changes,
+        const std::vector<std::size_t>& volumes, const std::vector<std::size_t>& textures,
         const py::array_t<double, py::array::c_style | py::array::forcecast>& weights,
         const py::dict& settings, const py::object& progress) {
         const Wanted wanted = wanted_of(settings);
+        const std::vector<ChangedScene> changed = changed_of(changes, wanted);
         const ImageScene itself = image_of(scene, wanted);
         const std::span<const double> values(weights.data(),
                                              static_cast<std::size_t>(weights.size()));
-        std::vector<float> found = differentiate(itself, progress, [&](Renderer& renderer) {
-            return uw::voxel_derivatives(renderer, volume, values, derived(wanted),
-                                         told("derivatives"));
+        SceneGradient found = differentiate(itself, progress, [&](Renderer& renderer) {
+            return scene_gradient(renderer, {changed, volumes, textures}, values, derived(wanted),
+                                  told("derivatives"));
         });
-        std::vector<py::ssize_t> shape;
-        for (const std::size_t side : itself.desc().volumes[volume].array->size)
-            shape.push_back(static_cast<py::ssize_t>(side));
-        return owned(std::move(found), shape);
+        py::list by_voxel, by_texel;
+        for (std::size_t i = 0; i < volumes.size(); ++i) {
+            std::vector<py::ssize_t> shape;
+            for (const std::size_t side : itself.desc().volumes[volumes[i]].array->size)
+                shape.push_back(static_cast<py::ssize_t>(side));
+            by_voxel.append(owned(std::move(found.by_voxel[i]), shape));
+        }
+        for (std::size_t i = 0; i < textures.size(); ++i) {
+            const MeshMaterial& material =
+                itself.desc().geometry[textures[i]].mesh->materials.front();
+            by_texel.append(owned(
+                std::move(found.by_texel[i]),
+                {material.base_map.texture->height(), material.base_map.texture->width(), 3}));
+        }
+        return py::make_tuple(py::cast(found.by_change), by_voxel, by_texel);
     }
 
     void clear() {
@@ -451,20 +464,29 @@ class RendererObject : public RunClient {
         return scene_of_image(desc, wanted.choice);
     }
 
+    static std::vector<ChangedScene> changed_of(const std::vector<Change>& changes,
+                                                const Wanted& wanted) {
+        std::vector<ChangedScene> changed;
+        for (const auto& [name, less, more, step] : changes)
+            changed.push_back({name, image_of(*less, wanted), image_of(*more, wanted), step});
+        return changed;
+    }
+
     ShareCallback told(const char* stage) {
         return [this, stage](double share) { tell(stage, share); };
     }
 
     /// What `work` makes with the renderer, which has the scene.
     template <class Work>
-    std::vector<float> differentiate(const ImageScene& scene, const py::object& progress,
-                                     const Work& work) {
+    std::invoke_result_t<const Work&, Renderer&> differentiate(const ImageScene& scene,
+                                                               const py::object& progress,
+                                                               const Work& work) {
         const std::unique_lock alone(busy_, std::try_to_lock);
         if (!alone)
             throw UsageError(
                 "derivatives: this Renderer is at work, in another thread or further up; make one "
                 "for each thread");
-        std::vector<float> values;
+        std::invoke_result_t<const Work&, Renderer&> values;
         const auto differentiated = [&](Renderer& renderer) {
             renderer.set_scene(scene);
             values = work(renderer);
@@ -521,8 +543,9 @@ void bind_renderer(py::module_& module) {
              py::arg("progress"))
         .def("derivatives", &RendererObject::derivatives, py::arg("scene"), py::arg("changes"),
              py::arg("settings"), py::arg("progress"))
-        .def("voxel_derivatives", &RendererObject::voxel_derivatives, py::arg("scene"),
-             py::arg("volume"), py::arg("weights"), py::arg("settings"), py::arg("progress"))
+        .def("gradient", &RendererObject::gradient, py::arg("scene"), py::arg("changes"),
+             py::arg("volumes"), py::arg("textures"), py::arg("weights"), py::arg("settings"),
+             py::arg("progress"))
         .def("clear", &RendererObject::clear);
 }
 

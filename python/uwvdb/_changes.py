@@ -86,10 +86,12 @@ def changes_of(scene: Scene, path: str) -> tuple[tuple[int, ...], list[Change]]:
     return shape, result
 
 
-def volume_of_array(path: str) -> int | None:
-    """Which volume `path` names the array of; None: it is another path."""
-    found = re.fullmatch(r"volumes\[(\d+)\]\.array", path)
-    return int(found[1]) if found else None
+def array_of(path: str) -> tuple[str, int] | None:
+    """Which entry `path` names the array of, ("volumes", 0) or ("geometry", 0), by that section's
+    arrays: voxels or texels. None: it is another path."""
+    found = (re.fullmatch(r"(volumes)\[(\d+)\]\.array", path)
+             or re.fullmatch(r"(geometry)\[(\d+)\]\.texture", path))
+    return (found[1], int(found[2])) if found else None
 
 
 def checked_gradient(gradient: Any, scene: Scene,

@@ -170,31 +170,34 @@ class Renderer:
         """The derivatives of a number by those at the paths `of` (a vector times a Jacobian), each
         of the shape that the scene has there; `gradient` (height, width, bands) is the number's
         derivative by "total": 2 (total - seen) where it is the sum of squares of what an image is
-        off. "volumes[0].array" stands for all values of an array that was added to the volumes.
+        off. "volumes[0].array" stands for all values of an array that was added to the volumes,
+        "geometry[0].texture" for all of a texture that was added with a mesh.
 
-        Like jvp() otherwise. Numbers take a pass over the image together, and each array one. Unless
-        the quality is "exact", a few places on each ray stand for all in those of arrays: descend
-        with another `seed` in each step."""
+        Like jvp() otherwise. All take one pass over the image together. Unless the quality is
+        "exact", a few places on each ray stand for all, without bias: descend with another `seed`
+        in each step."""
         options = _settings("backward", scene, {**settings, "seed": seed})
         paths = [of] if isinstance(of, str) else list(of)
         weights = _changes.checked_gradient(gradient, scene, settings)
-        result: dict[str, NDArray[np.float64]] = {}
         changes: list[_changes.Change] = []
         shapes: dict[str, tuple[int, ...]] = {}
-        for path in paths:
-            volume = _changes.volume_of_array(path)
-            if volume is not None:
-                result[path] = self._renderer.voxel_derivatives(
-                    scene._native, volume, weights, options, progress).astype(np.float64)
+        arrays: dict[str, dict[str, int]] = {"volumes": {}, "geometry": {}}
+        for path in dict.fromkeys(paths):
+            array = _changes.array_of(path)
+            if array is not None:
+                arrays[array[0]][path] = array[1]
                 continue
             shapes[path], more = _changes.changes_of(scene, path)
             changes += more
-        if changes:
-            images = self._renderer.derivatives(scene._native, changes, options, progress)
-            numbers = np.einsum("kyxb,yxb->k", images, weights)
-            ends = np.cumsum([np.prod(shape, dtype=int) for shape in shapes.values()])
-            for (path, shape), of_path in zip(shapes.items(), np.split(numbers, ends[:-1])):
-                result[path] = of_path.reshape(shape)
+        numbers, *of_arrays = self._renderer.gradient(
+            scene._native, changes, *(list(entries.values()) for entries in arrays.values()),
+            weights, options, progress)
+        result = {path: values.astype(np.float64)
+                  for entries, found in zip(arrays.values(), of_arrays)
+                  for path, values in zip(entries, found)}
+        ends = np.cumsum([np.prod(shape, dtype=int) for shape in shapes.values()])
+        for (path, shape), of_path in zip(shapes.items(), np.split(np.array(numbers), ends[:-1])):
+            result[path] = of_path.reshape(shape)
         return {path: result[path] for path in paths}
 
     def clear(self) -> None:

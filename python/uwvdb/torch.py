@@ -39,15 +39,18 @@ class _Render(torch.autograd.Function):
 
 def with_values(scene: Scene, values: Mapping[str, torch.Tensor]) -> Scene:
     """The scene with these values, by their paths; "volumes[0].array" stands for an array that was
-    added to the volumes."""
+    added to the volumes, "geometry[0].texture" for the texture of a mesh."""
     changed = scene.copy()
     written: dict[str, Any] = {}
     for path, value in values.items():
         numbers = value.detach().cpu().numpy()
-        if _changes.volume_of_array(path) is None:
+        array = _changes.array_of(path)
+        if array is None:
             written[path] = numbers.tolist()
-        else:
+        elif array[0] == "volumes":
             changed.volumes.set_values(changed[path], numbers)
+        else:
+            changed.geometry.set_texture(changed[f"geometry[{array[1]}].mesh"], numbers)
     if written:
         changed.update(written)
     return changed

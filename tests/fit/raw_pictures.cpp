@@ -57,5 +57,34 @@ TEST_F(FitPictures, LampsFromRawNumbers) {
             << unknown.dump();
 }
 
+// A lamp's place, direction and how bright it is in each, as a table, all at once. The plane shows
+// the outermost angle where it is dim: its error is what the pictures tell of it.
+TEST_F(FitPictures, ProfileFromRawNumbers) {
+    const std::string profile = "lamps.left.profile={type: table, angles: [0, 10, 20, 30, 40], ";
+    take_pictures(k_raw_sensor, {profile + "values: [0.9, 1, 0.7, 0.3, 0.1]}"});
+    const Json found = fit("dive_%02d.sensor.png",
+                           "lamps.left.position,lamps.left.direction,"
+                           "lamps.left.profile.values",
+                           {profile + "values: [0.8, 0.8, 0.5, 0.2, 0.2]}",
+                            "lamps.left.position=[-0.5, 0, 0]", "lamps.left.direction=[0, 0, 1]"});
+    EXPECT_TRUE(found.at("converged").get<bool>());
+    EXPECT_NEAR(found.at("rms").get<double>(), 1, 0.1);
+    expect_found(found,
+                 {{"lamps.left.position[0]", -0.6},
+                  {"lamps.left.position[1]", 0.1},
+                  {"lamps.left.position[2]", 0.1},
+                  {"lamps.left.direction (tilt 1)", std::atan(0.15) * 180 / 3.14159265358979},
+                  {"lamps.left.direction (tilt 2)", 0},
+                  {"lamps.left.profile.values[0]", 0.9},
+                  {"lamps.left.profile.values[1]", 1},
+                  {"lamps.left.profile.values[2]", 0.7},
+                  {"lamps.left.profile.values[3]", 0.3},
+                  {"lamps.left.profile.values[4]", 0.1}},
+                 4, 0);
+    for (const Json& unknown : found.at("unknowns"))
+        EXPECT_LT(unknown.at("error").get<double>(), unknown.at("unit") == "deg" ? 1.0 : 0.02)
+            << unknown.dump();
+}
+
 }  // namespace
 }  // namespace uw::test
