@@ -18,9 +18,11 @@
 #include <type_traits>
 #include <utility>
 
+#include "camera/camera.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/image/camera_sensor.h"
 #include "core/image/colour_view.h"
 #include "core/image/image_file.h"
 #include "core/image/image_formats.h"
@@ -331,6 +333,74 @@ std::map<int, std::string> numbered(const auto& names) {
     return result;
 }
 
+ImageScene image_of(const SceneObject& scene, const Wanted& wanted) {
+    SceneDesc desc = *scene.desc();
+    apply_request(wanted.image, desc);
+    return scene_of_image(desc, wanted.choice);
+}
+
+using Light = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+/// Calls `each(numbers, irradiance, colour, factor)` for all that the pixels of an image of `total`
+/// light (rows, columns, bands) hold of the sensor's numbers, row by row: one each, or with three
+/// values per pixel one for each colour. Returns the shape of them all.
+template <class Each>
+std::array<py::ssize_t, 3> visit_numbers(const SceneObject& scene, const py::dict& settings,
+                                         const Light& total, const Each& each) {
+    const Wanted wanted = wanted_of(settings);
+    const ImageScene image = image_of(scene, wanted);
+    const SceneDesc& desc = image.desc();
+    if (!desc.camera.sensor)
+        throw UsageError("sensor: the scene's camera has none; set camera.sensor");
+    const PixelWindow window =
+        wanted.options.window.value_or(PixelWindow{0, 0, desc.camera.width, desc.camera.height});
+    const std::size_t bands = desc.water.bands_nm.size();
+    if (total.ndim() != 3 || total.shape(0) != window.height() ||
+        total.shape(1) != window.width() || static_cast<std::size_t>(total.shape(2)) != bands)
+        throw UsageError("sensor: the light is not that of all pixels and bands of the image");
+    const SensorMosaic mosaic = desc.camera.sensor->mosaic;
+    const auto values = static_cast<std::size_t>(value_count(mosaic));
+    const MeanNumbers numbers(desc);
+    const Camera camera(desc.camera);
+    const float* light = total.data();
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) {
+            const double factor = numbers.photoelectrons().irradiance_factor(
+                camera.lens_ray(x + 0.5, y + 0.5), camera.focus_vergence());
+            Spectrum irradiance;
+            for (std::size_t b = 0; b < bands; ++b) irradiance[b] = factor * double{*light++};
+            for (std::size_t k = 0; k < values; ++k)
+                each(numbers, irradiance, values > 1 ? k : colour_at(mosaic, x, y), factor);
+        }
+    return {window.height(), window.width(), static_cast<py::ssize_t>(values)};
+}
+
+py::array_t<double> mean_numbers(const SceneObject& scene, const py::dict& settings,
+                                 const Light& total) {
+    std::vector<double> found;
+    const auto shape = visit_numbers(
+        scene, settings, total,
+        [&](const MeanNumbers& numbers, const Spectrum& irradiance, std::size_t colour,
+            double /*factor*/) { found.push_back(numbers.at(irradiance, colour)); });
+    return py::array_t<double>(shape, found.data());
+}
+
+/// By the light of each band, the last axis.
+py::array_t<double> number_slopes(const SceneObject& scene, const py::dict& settings,
+                                  const Light& total) {
+    std::vector<double> found;
+    const auto bands = static_cast<std::size_t>(total.ndim() == 3 ? total.shape(2) : 0);
+    const auto shape =
+        visit_numbers(scene, settings, total,
+                      [&](const MeanNumbers& numbers, const Spectrum& irradiance,
+                          std::size_t colour, double factor) {
+                          for (std::size_t b = 0; b < bands; ++b)
+                              found.push_back(factor * numbers.slope(irradiance, colour, b));
+                      });
+    return py::array_t<double>({shape[0], shape[1], shape[2], static_cast<py::ssize_t>(bands)},
+                               found.data());
+}
+
 class RendererObject : public RunClient {
   public:
     explicit RendererObject(int threads) : threads_(threads), engine_(std::in_place) {}
@@ -458,12 +528,6 @@ class RendererObject : public RunClient {
         return {wanted.options.window, wanted.seed};
     }
 
-    static ImageScene image_of(const SceneObject& scene, const Wanted& wanted) {
-        SceneDesc desc = *scene.desc();
-        apply_request(wanted.image, desc);
-        return scene_of_image(desc, wanted.choice);
-    }
-
     static std::vector<ChangedScene> changed_of(const std::vector<Change>& changes,
                                                 const Wanted& wanted) {
         std::vector<ChangedScene> changed;
@@ -537,6 +601,10 @@ class RendererObject : public RunClient {
 }  // namespace
 
 void bind_renderer(py::module_& module) {
+    module.def("mean_numbers", mean_numbers, py::arg("scene"), py::arg("settings"),
+               py::arg("total"));
+    module.def("number_slopes", number_slopes, py::arg("scene"), py::arg("settings"),
+               py::arg("total"));
     py::class_<RendererObject>(module, "Renderer")
         .def(py::init<int>(), py::arg("threads"))
         .def("render", &RendererObject::render, py::arg("scene"), py::arg("settings"),

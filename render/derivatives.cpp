@@ -60,6 +60,10 @@ void refuse_other_changes(const std::string& name, const SceneDesc& desc,
     const auto refuse = [&](const char* what) {
         throw UsageError(fmt::format("derivative {}: {}", printable(name), what));
     };
+    if (name.starts_with("camera.sensor"))
+        refuse(
+            "light does not depend on the sensor, and its numbers do; give layer=\"sensor\", and "
+            "they are differentiated");
     for (const char* const key : {"camera", "cameras", "rig", "render", "frames", "sensors"})
         if (name.starts_with(key))
             refuse(

@@ -201,12 +201,16 @@ void begin_exposures(SceneUnknowns& unknowns, PictureResiduals& pictures) {
             unknowns.begin_at(i, exposures[unknowns.all()[i].picture]);
 }
 
-/// The scene's text with what was found, and all else as it was.
+/// The scene's text with what --set changed and what was found, and all else as it was.
 std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
                         const FitResult& result) {
     SceneText text(
         read_text_file(a.scene, a.scene.filename().string(), YamlLimits{}.bytes, "scene"),
         a.scene.filename().string());
+    for (const std::string& change : a.overrides) {
+        const std::size_t equals = change.find('=');
+        text.set(change.substr(0, equals), change.substr(equals + 1));
+    }
     std::vector<double> values;
     for (const FoundValue& found : result.values) values.push_back(found.value);
     for (const auto& [path, value] : unknowns.settings(values)) text.set(path, value);

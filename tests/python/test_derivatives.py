@@ -318,7 +318,7 @@ def test_backward_to_texels(scene, width, height):
     rng = np.random.default_rng(3)
     texels = rng.uniform(0.2, 0.8, (height, width, 3))
     path = textured(scene, texels)
-    image = RENDERER.render(scene, quality="exact")
+    image = RENDERER.render(scene)
     weights = rng.normal(size=image["total"].shape)
     gradient = image.backward(weights, path)[path]
     assert gradient.shape == texels.shape
@@ -327,8 +327,8 @@ def test_backward_to_texels(scene, width, height):
     def render(h):
         changed = scene.copy()
         changed.geometry.set_texture("sheet", texels + h * direction)
-        return (RENDERER.render(changed, quality="exact")["total"] * weights).sum()
-    # Images are float32.
+        return (RENDERER.render(changed)["total"] * weights).sum()
+    # Images are float32. Light of surfaces is exact at final, too.
     assert (gradient * direction).sum() == pytest.approx(
         central(render, 0.02),
         abs=1e-4 * np.linalg.norm(gradient) * np.linalg.norm(direction))
@@ -355,7 +355,7 @@ def test_textures_are_kept_and_checked(scene):
     texels = np.full((2, 3, 3), 0.25)
     texels[0, 0] = [0.5, 0.75, 1]
     textured(scene, texels)
-    settings = dict(size=(24, 18), quality="exact")
+    settings = dict(size=(24, 18))
     image = RENDERER.render(scene, ["clean"], **settings)["clean"]
     again = RENDERER.render(pickle.loads(pickle.dumps(scene)), ["clean"], **settings)["clean"]
     assert (image == again).all()
