@@ -34,6 +34,27 @@ board_module::GreyPicture grey(const PixelImage& image) {
     return picture;
 }
 
+/// The same corners from the other end of the board, if the square beyond the first of them is
+/// bright: that of uwvdb's sheet is black. Boards that look the same turned by half stay as they
+/// were found.
+void begin_at_black(const board_module::GreyPicture& picture, const BoardDesc& board,
+                    std::vector<ImagePoint>& corners) {
+    if ((board.columns + board.rows) % 2 == 0) return;
+    const auto columns = static_cast<std::size_t>(board.columns);
+    // The grey in the middle of the square before the first corner, and of that beside it.
+    const auto grey_at = [&](double along) {
+        const ImagePoint &first = corners[0], &right = corners[1], &below = corners[columns];
+        const double x = first.x + along * (right.x - first.x) - 0.5 * (below.x - first.x);
+        const double y = first.y + along * (right.y - first.y) - 0.5 * (below.y - first.y);
+        const int column = std::clamp(static_cast<int>(x), 0, picture.width - 1);
+        const int row = std::clamp(static_cast<int>(y), 0, picture.height - 1);
+        return picture
+            .values[static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) +
+                    static_cast<std::size_t>(column)];
+    };
+    if (grey_at(-0.5) > grey_at(0.5)) std::ranges::reverse(corners);
+}
+
 }  // namespace
 
 BoardDesc read_board(const std::string& text) {
@@ -67,7 +88,8 @@ PointTable find_board_corners(const std::vector<std::filesystem::path>& pictures
     for (const std::filesystem::path& file : pictures) {
         throw_if_stopped();
         std::vector<ImagePoint> corners;
-        find(grey(read_image(file)), board, corners);
+        const board_module::GreyPicture picture = grey(read_image(file));
+        find(picture, board, corners);
         if (corners.empty()) {
             say(
                 fmt::format("{}: the board of {} x {} corners is not to be seen, or not all of it; "
@@ -75,6 +97,7 @@ PointTable find_board_corners(const std::vector<std::filesystem::path>& pictures
                             file.string(), board.columns, board.rows));
             continue;
         }
+        begin_at_black(picture, board, corners);
         const std::size_t image = table.images.size();
         table.images.push_back(file.filename().string());
         for (std::size_t i = 0; i < corners.size(); ++i) {

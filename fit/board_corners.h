@@ -19,8 +19,10 @@ struct BoardDesc {
 BoardDesc read_board(const std::string& text);
 
 /// The corners of the board in photographs, to a fraction of a pixel, found by OpenCV in the module
-/// of fit/least_squares.h. Pictures that do not show all of the board are passed over, and named to
-/// `say` in one line each. Throws as read_image, and InputError if none shows it.
+/// of fit/least_squares.h: row by row, x to the right and y down the board [m] from the first one,
+/// beyond which the square at the board's corner is black, as on uwvdb's sheet. Pictures that do
+/// not show all of the board are passed over, and named to `say` in one line each. Throws as
+/// read_image, and InputError if none shows it.
 PointTable find_board_corners(const std::vector<std::filesystem::path>& pictures,
                               const BoardDesc& board,
                               const std::function<void(const std::string&)>& say);

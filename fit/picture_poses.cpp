@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/text.h"
 #include "core/scene/pose_file.h"
 
@@ -97,6 +98,25 @@ std::vector<ObservedPicture> posed_pictures(const std::filesystem::path& images,
             counted(by_name.size(), "pose"), printable(images.string(), 300),
             printable(by_name.begin()->first)));
     return posed;
+}
+
+std::string transforms_json(std::span<const std::string> names, std::span<const Affine> poses) {
+    Json frames = Json::array();
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        // There y is up and z backward.
+        const Vector3 signs{1, -1, -1};
+        Json rows = Json::array();
+        for (int row = 0; row < 3; ++row) {
+            Json numbers = Json::array();
+            for (int column = 0; column < 3; ++column)
+                numbers.push_back(number_json(signs[column] * poses[i].linear()[column][row]));
+            numbers.push_back(number_json(poses[i].offset()[row]));
+            rows.push_back(numbers);
+        }
+        rows.push_back({0, 0, 0, 1});
+        frames.push_back({{"file_path", names[i]}, {"transform_matrix", rows}});
+    }
+    return json_text({{"frames", frames}});
 }
 
 }  // namespace uw

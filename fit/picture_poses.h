@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "core/base/vector_math.h"
 #include "fit/picture_residuals.h"
 
 namespace uw {
@@ -19,5 +21,9 @@ namespace uw {
 std::vector<ObservedPicture> posed_pictures(const std::filesystem::path& images,
                                             const std::filesystem::path& poses,
                                             const std::function<void(const std::string&)>& say);
+
+/// Poses as nerfstudio's transforms.json has them, which posed_pictures reads: of pictures by their
+/// names, world_from_camera, whose axes are x right, y down, z forward.
+std::string transforms_json(std::span<const std::string> names, std::span<const Affine> poses);
 
 }  // namespace uw

@@ -112,33 +112,6 @@ class Values {
     const std::optional<SensorDesc>& sensor_;
 };
 
-/// What a sensor's raw numbers are in the mean, before they are rounded.
-class MeanNumbers {
-  public:
-    /// `scene`: with the camera's full resolution.
-    explicit MeanNumbers(const SceneDesc& scene)
-        : electrons_(scene), sensor_(*scene.camera.sensor) {}
-
-    double at(const Spectrum& irradiance, std::size_t colour) const {
-        double electrons =
-            electrons_.mean(irradiance, colour) + sensor_.dark_current * sensor_.exposure.value();
-        if (sensor_.full_well) electrons = std::min(electrons, *sensor_.full_well);
-        return sensor_.system_gain() * electrons + sensor_.black_level;
-    }
-    /// What they are without light.
-    double dark() const {
-        return sensor_.system_gain() * sensor_.dark_current * sensor_.exposure.value() +
-               sensor_.black_level;
-    }
-    double factor(const LensRay& ray, double focus_vergence) const {
-        return electrons_.irradiance_factor(ray, focus_vergence);
-    }
-
-  private:
-    Photoelectrons electrons_;
-    SensorDesc sensor_;
-};
-
 /// The image of a scene that a picture shows.
 ImageScene scene_of_picture(const SceneDesc& scene, const ObservedPicture& picture) {
     if (!picture.world_from_camera) return scene_of_image(scene, picture.choice);
@@ -310,8 +283,8 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
             const std::span<const float> pixel = film.pixel(x, y);
             Colours colours{};
             if (numbers) {
-                const double factor =
-                    numbers->factor(camera.lens_ray(x + 0.5, y + 0.5), camera.focus_vergence());
+                const double factor = numbers->photoelectrons().irradiance_factor(
+                    camera.lens_ray(x + 0.5, y + 0.5), camera.focus_vergence());
                 // Three bands are red, green and blue themselves.
                 const std::size_t first =
                     plan.has(Layer::total)

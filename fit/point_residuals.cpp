@@ -215,6 +215,20 @@ bool PointResiduals::evaluate(std::size_t group, const Block* block, double* res
     return true;
 }
 
+std::vector<Affine> PointResiduals::poses(std::span<const Block> blocks) const {
+    std::vector<Affine> found;
+    for (std::size_t i = 0; i < poses_.size(); ++i) {
+        const auto in_camera = [&](const Vector3& point) {
+            return from_origin(moved(poses_[i], blocks[i], point - from_origin(centres_[i])));
+        };
+        const Vector3 origin = in_camera(Vector3(0.0));
+        Matrix3 axes(1.0);
+        for (int axis = 0; axis < 3; ++axis) axes[axis] = in_camera(Matrix3(1.0)[axis]) - origin;
+        found.push_back(Affine(axes, origin).inverse());
+    }
+    return found;
+}
+
 std::vector<ResidualGroup> PointResiduals::groups() const {
     std::vector<ResidualGroup> groups;
     for (const PhotographedPoint& point : seen_.points)

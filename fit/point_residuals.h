@@ -54,6 +54,10 @@ class PointResiduals final : public Observations {
     std::vector<ResidualGroup> groups() const override;
     std::size_t block_count() const override { return poses_.size(); }
 
+    /// Where the camera is in the axes of each image's points, world_from_camera, with these
+    /// blocks.
+    std::vector<Affine> poses(std::span<const Block> blocks) const;
+
     const std::vector<std::string>& images() const override { return seen_.images; }
     Place place(std::size_t group) const override {
         return {seen_.points[group].image, seen_.points[group].seen};

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <string_view>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -17,6 +19,7 @@ namespace {
 // Lengths are in millimetres from the sheet's upper left corner, as the eye reads.
 constexpr double k_margin = 10;         // that printers leave
 constexpr double k_patch_width = 24;    // of the greys
+constexpr double k_below_grey = 5;      // where its number stands
 constexpr double k_gap = 12;            // white beside the board
 constexpr double k_foot_height = 26;    // of the ruler and what stands beside it
 constexpr double k_ruler_length = 100;  // for checking the scale
@@ -83,23 +86,47 @@ double room_down(const Paper& paper) {
     return paper.height - 2 * k_margin - k_foot_height;
 }
 
-void draw_board(const BoardDesc& board, double side, PageContent& page) {
+/// A part of the sheet. `grey`: 0 black, 1 paper.
+struct Patch {
+    double x = 0, y = 0, width = 0, height = 0, grey = 0;
+};
+
+std::vector<Patch> squares_of(const BoardDesc& board, double side) {
+    std::vector<Patch> patches;
     for (int row = 0; row <= board.rows; ++row)
         for (int column = 0; column <= board.columns; ++column)
             if ((row + column) % 2 == 0)
-                page.rectangle(k_margin + side * column, k_margin + side * row, side, side, 0);
+                patches.push_back({k_margin + side * column, k_margin + side * row, side, side, 0});
+    return patches;
 }
 
-void draw_greys(double left, double height, PageContent& page) {
+std::vector<Patch> greys_of(double left, double height) {
     constexpr int k_fifths = 5;
     const double step = height / (k_fifths + 1);
-    for (int i = 0; i <= k_fifths; ++i) {
-        const double grey = static_cast<double>(i) / k_fifths;
-        const double y = k_margin + step * i;
-        page.rectangle(left, y, k_patch_width, step - 5, grey);
-        page.text(left, y + step - 1.5, 7, i == k_fifths ? "paper" : fmt::format("{:.1f}", grey));
-    }
+    std::vector<Patch> patches;
+    for (int i = 0; i <= k_fifths; ++i)
+        patches.push_back({left, k_margin + step * i, k_patch_width, step - k_below_grey,
+                           static_cast<double>(i) / k_fifths});
+    return patches;
 }
+
+/// The sheet's sizes, and that the board has room on it.
+struct Sheet {
+    Sheet(const BoardDesc& board, const Paper& paper)
+        : side(1000 * board.square),
+          height(side * (board.rows + 1)),
+          greys_left(paper.width - k_margin - k_patch_width) {
+        const double width = side * (board.columns + 1);
+        if (width <= room_across(paper) && height <= room_down(paper)) return;
+        const BoardDesc fitting = board_for(paper);
+        throw UsageError(fmt::format(
+            "--board {}x{}x{:.6g}: is {:.0f} x {:.0f} mm, and {} has room for {:.0f} x {:.0f} mm; "
+            "take another --paper, or --board {}x{}x{:.6g}",
+            board.columns, board.rows, board.square, width, height, paper.name, room_across(paper),
+            room_down(paper), fitting.columns, fitting.rows, fitting.square));
+    }
+    double side, height, greys_left;  // height: of the board
+};
 
 void draw_foot(const BoardDesc& board, double side, double top, PageContent& page) {
     constexpr double k_line = 0.2;
@@ -139,21 +166,69 @@ BoardDesc board_for(const Paper& paper) {
 }
 
 std::string target_pdf(const BoardDesc& board, const Paper& paper) {
-    const double side = 1000 * board.square;
-    const double width = side * (board.columns + 1), height = side * (board.rows + 1);
-    if (width > room_across(paper) || height > room_down(paper)) {
-        const BoardDesc fitting = board_for(paper);
-        throw UsageError(fmt::format(
-            "--board {}x{}x{:.6g}: is {:.0f} x {:.0f} mm, and {} has room for {:.0f} x {:.0f} mm; "
-            "take another --paper, or --board {}x{}x{:.6g}",
-            board.columns, board.rows, board.square, width, height, paper.name, room_across(paper),
-            room_down(paper), fitting.columns, fitting.rows, fitting.square));
-    }
+    const Sheet sheet(board, paper);
     PageContent page(paper);
-    draw_board(board, side, page);
-    draw_greys(paper.width - k_margin - k_patch_width, height, page);
-    draw_foot(board, side, k_margin + height + 6, page);
+    for (const Patch& patch : squares_of(board, sheet.side))
+        page.rectangle(patch.x, patch.y, patch.width, patch.height, patch.grey);
+    for (const Patch& patch : greys_of(sheet.greys_left, sheet.height)) {
+        page.rectangle(patch.x, patch.y, patch.width, patch.height, patch.grey);
+        page.text(patch.x, patch.y + patch.height + k_below_grey - 1.5, 7,
+                  patch.grey == 1 ? "paper" : fmt::format("{:.1f}", patch.grey));
+    }
+    draw_foot(board, sheet.side, k_margin + sheet.height + 6, page);
     return pdf_of(paper, page);
+}
+
+TargetMesh target_mesh(const BoardDesc& board, const Paper& paper, const std::string& name) {
+    const Sheet sheet(board, paper);
+    std::vector<Patch> patches = squares_of(board, sheet.side);
+    for (const Patch& patch : greys_of(sheet.greys_left, sheet.height)) patches.push_back(patch);
+    // Divided at all edges, so that nothing lies on anything else.
+    std::vector<double> xs{0, paper.width}, ys{0, paper.height};
+    for (const Patch& patch : patches) {
+        for (const double x : {patch.x, patch.x + patch.width}) xs.push_back(x);
+        for (const double y : {patch.y, patch.y + patch.height}) ys.push_back(y);
+    }
+    constexpr double k_same = 1e-6;
+    for (std::vector<double>* edges : {&xs, &ys}) {
+        std::ranges::sort(*edges);
+        const auto beyond =
+            std::ranges::unique(*edges, [](double a, double b) { return b - a < k_same; });
+        edges->erase(beyond.begin(), beyond.end());
+    }
+    const auto grey_at = [&](double x, double y) {
+        for (const Patch& patch : patches)
+            if (x > patch.x && x < patch.x + patch.width && y > patch.y &&
+                y < patch.y + patch.height)
+                return patch.grey;
+        return 1.0;
+    };
+    std::map<double, std::string> faces;  // by grey
+    for (std::size_t j = 0; j + 1 < ys.size(); ++j)
+        for (std::size_t i = 0; i + 1 < xs.size(); ++i) {
+            const std::size_t corner = j * xs.size() + i + 1;  // of the vertices, from 1
+            faces[grey_at(0.5 * (xs[i] + xs[i + 1]), 0.5 * (ys[j] + ys[j + 1]))] += fmt::format(
+                "f {} {} {} {}\n", corner, corner + xs.size(), corner + xs.size() + 1, corner + 1);
+        }
+    TargetMesh mesh;
+    mesh.obj =
+        fmt::format("# A board of {} x {} corners [m], its first one at the origin.\nmtllib {}\n",
+                    board.columns, board.rows, name);
+    const double origin = k_margin + sheet.side;
+    for (const double y : ys)
+        for (const double x : xs)
+            mesh.obj +=
+                fmt::format("v {:.7g} {:.7g} 0\n", (x - origin) / 1000, (y - origin) / 1000);
+    mesh.mtl = "# Reflectances of printed paper, roughly: put in what yours reflects, wet.\n";
+    for (const auto& [grey, quads] : faces) {
+        const std::string material = fmt::format("grey{:.0f}", 10 * grey);
+        // Toner reflects 4 %, paper 80 %.
+        const double reflectance = 0.04 + 0.76 * grey;
+        mesh.obj += fmt::format("usemtl {}\n{}", material, quads);
+        mesh.mtl += fmt::format("newmtl {}\nKd {:.4g} {:.4g} {:.4g}\n", material, reflectance,
+                                reflectance, reflectance);
+    }
+    return mesh;
 }
 
 }  // namespace uw

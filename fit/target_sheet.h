@@ -27,4 +27,12 @@ BoardDesc board_for(const Paper& paper);
 /// UsageError for a board that the paper has no room for.
 std::string target_pdf(const BoardDesc& board, const Paper& paper);
 
+/// The same sheet as a surface, without its letters and ruler: OBJ and its materials, whose
+/// reflectances (Kd) are those of printed paper, roughly. In the axes of find_board_corners [m], z
+/// into the sheet. `name`: of the file with the materials. Throws as target_pdf.
+struct TargetMesh {
+    std::string obj, mtl;
+};
+TargetMesh target_mesh(const BoardDesc& board, const Paper& paper, const std::string& name);
+
 }  // namespace uw

@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <new>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -110,14 +111,35 @@ std::shared_ptr<const LoadedGrid> grid_of_state(const py::tuple& state) {
     return grid;
 }
 
+MeshMaterial textured_material(const PixelImage& image) {
+    MeshMaterial material;
+    material.base_color = {1, 1, 1};
+    material.base_map.texture = std::make_shared<const Texture>(image, TextureEncoding::linear);
+    material.base_map.lookup.wrap_u = material.base_map.lookup.wrap_v = TextureWrap::clamp;
+    return material;
+}
+
 py::object state_of(const TriangleMesh& mesh) {
-    return py::make_tuple(bytes_of(mesh.positions), bytes_of(mesh.triangles));
+    py::object texture = py::none();
+    if (const TextureUse& map = mesh.materials.front().base_map) {
+        const std::span<const float> rgb = map.texture->rgb();
+        texture = py::make_tuple(map.texture->width(), map.texture->height(),
+                                 bytes_of(std::vector<float>(rgb.begin(), rgb.end())));
+    }
+    return py::make_tuple(bytes_of(mesh.positions), bytes_of(mesh.triangles), bytes_of(mesh.uvs[0]),
+                          texture);
 }
 
 std::shared_ptr<const TriangleMesh> mesh_of_state(const py::tuple& state) {
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->positions = values_of<float>(state[0]);
     mesh->triangles = values_of<std::uint32_t>(state[1]);
+    mesh->uvs[0] = values_of<float>(state[2]);
+    if (!state[3].is_none()) {
+        const auto texture = state[3].cast<py::tuple>();
+        mesh->materials = {textured_material({texture[0].cast<int>(), texture[1].cast<int>(), 3,
+                                              values_of<float>(texture[2]), true})};
+    }
     return mesh;
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/base/vector_math.h"
 #include "core/geometry/mesh.h"
+#include "core/image/pixel_image.h"
 #include "core/scene/yaml_document.h"
 #include "media/volumes/loaded_grid.h"
 
@@ -21,6 +22,9 @@ using DoubleRows = pybind11::array_t<double, pybind11::array::c_style | pybind11
 /// An affine map as a matrix of 4 x 4 numbers, and back.
 pybind11::array_t<double> matrix_of(const Affine& map);
 Affine affine_of(const DoubleRows& matrix);
+
+/// Diffuse, by a texture of linear light that ends at its edges.
+MeshMaterial textured_material(const PixelImage& image);
 
 /// Grids and meshes in memory as tuples for pickling, and back, to the bit.
 pybind11::object state_of(const LoadedGrid& grid);

@@ -15,11 +15,14 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
+#include "camera/camera.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/image/camera_sensor.h"
 #include "core/image/colour_view.h"
 #include "core/image/image_file.h"
 #include "core/image/image_formats.h"
@@ -330,6 +333,74 @@ std::map<int, std::string> numbered(const auto& names) {
     return result;
 }
 
+ImageScene image_of(const SceneObject& scene, const Wanted& wanted) {
+    SceneDesc desc = *scene.desc();
+    apply_request(wanted.image, desc);
+    return scene_of_image(desc, wanted.choice);
+}
+
+using Light = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+/// Calls `each(numbers, irradiance, colour, factor)` for all that the pixels of an image of `total`
+/// light (rows, columns, bands) hold of the sensor's numbers, row by row: one each, or with three
+/// values per pixel one for each colour. Returns the shape of them all.
+template <class Each>
+std::array<py::ssize_t, 3> visit_numbers(const SceneObject& scene, const py::dict& settings,
+                                         const Light& total, const Each& each) {
+    const Wanted wanted = wanted_of(settings);
+    const ImageScene image = image_of(scene, wanted);
+    const SceneDesc& desc = image.desc();
+    if (!desc.camera.sensor)
+        throw UsageError("sensor: the scene's camera has none; set camera.sensor");
+    const PixelWindow window =
+        wanted.options.window.value_or(PixelWindow{0, 0, desc.camera.width, desc.camera.height});
+    const std::size_t bands = desc.water.bands_nm.size();
+    if (total.ndim() != 3 || total.shape(0) != window.height() ||
+        total.shape(1) != window.width() || static_cast<std::size_t>(total.shape(2)) != bands)
+        throw UsageError("sensor: the light is not that of all pixels and bands of the image");
+    const SensorMosaic mosaic = desc.camera.sensor->mosaic;
+    const auto values = static_cast<std::size_t>(value_count(mosaic));
+    const MeanNumbers numbers(desc);
+    const Camera camera(desc.camera);
+    const float* light = total.data();
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) {
+            const double factor = numbers.photoelectrons().irradiance_factor(
+                camera.lens_ray(x + 0.5, y + 0.5), camera.focus_vergence());
+            Spectrum irradiance;
+            for (std::size_t b = 0; b < bands; ++b) irradiance[b] = factor * double{*light++};
+            for (std::size_t k = 0; k < values; ++k)
+                each(numbers, irradiance, values > 1 ? k : colour_at(mosaic, x, y), factor);
+        }
+    return {window.height(), window.width(), static_cast<py::ssize_t>(values)};
+}
+
+py::array_t<double> mean_numbers(const SceneObject& scene, const py::dict& settings,
+                                 const Light& total) {
+    std::vector<double> found;
+    const auto shape = visit_numbers(
+        scene, settings, total,
+        [&](const MeanNumbers& numbers, const Spectrum& irradiance, std::size_t colour,
+            double /*factor*/) { found.push_back(numbers.at(irradiance, colour)); });
+    return py::array_t<double>(shape, found.data());
+}
+
+/// By the light of each band, the last axis.
+py::array_t<double> number_slopes(const SceneObject& scene, const py::dict& settings,
+                                  const Light& total) {
+    std::vector<double> found;
+    const auto bands = static_cast<std::size_t>(total.ndim() == 3 ? total.shape(2) : 0);
+    const auto shape =
+        visit_numbers(scene, settings, total,
+                      [&](const MeanNumbers& numbers, const Spectrum& irradiance,
+                          std::size_t colour, double factor) {
+                          for (std::size_t b = 0; b < bands; ++b)
+                              found.push_back(factor * numbers.slope(irradiance, colour, b));
+                      });
+    return py::array_t<double>({shape[0], shape[1], shape[2], static_cast<py::ssize_t>(bands)},
+                               found.data());
+}
+
 class RendererObject : public RunClient {
   public:
     explicit RendererObject(int threads) : threads_(threads), engine_(std::in_place) {}
@@ -359,9 +430,7 @@ class RendererObject : public RunClient {
     py::array_t<float> derivatives(const SceneObject& scene, const std::vector<Change>& changes,
                                    const py::dict& settings, const py::object& progress) {
         const Wanted wanted = wanted_of(settings);
-        std::vector<ChangedScene> changed;
-        for (const auto& [name, less, more, step] : changes)
-            changed.push_back({name, image_of(*less, wanted), image_of(*more, wanted), step});
+        const std::vector<ChangedScene> changed = changed_of(changes, wanted);
         const ImageScene itself = image_of(scene, wanted);
         const CameraDesc& camera = itself.desc().camera;
         const PixelWindow window =
@@ -374,24 +443,38 @@ class RendererObject : public RunClient {
                       static_cast<py::ssize_t>(itself.desc().water.bands_nm.size())});
     }
 
-    /// The derivatives of a number by the values of the array of a volume, from those by the light
-    /// of the image's pixels (rows, columns, bands).
-    py::array_t<float> voxel_derivatives(
-        const SceneObject& scene, std::size_t volume,
+    /// The derivatives of a number from those by the light of the image's pixels (rows, columns,
+    /// bands): by changes, by the values of the arrays of some volumes, and by the texels of the
+    /// textures of some entries of geometry.
+    py::tuple gradient(
+        const SceneObject& scene, const std::vector<Change>& changes,
+        const std::vector<std::size_t>& volumes, const std::vector<std::size_t>& textures,
         const py::array_t<double, py::array::c_style | py::array::forcecast>& weights,
         const py::dict& settings, const py::object& progress) {
         const Wanted wanted = wanted_of(settings);
+        const std::vector<ChangedScene> changed = changed_of(changes, wanted);
         const ImageScene itself = image_of(scene, wanted);
         const std::span<const double> values(weights.data(),
                                              static_cast<std::size_t>(weights.size()));
-        std::vector<float> found = differentiate(itself, progress, [&](Renderer& renderer) {
-            return uw::voxel_derivatives(renderer, volume, values, derived(wanted),
-                                         told("derivatives"));
+        SceneGradient found = differentiate(itself, progress, [&](Renderer& renderer) {
+            return scene_gradient(renderer, {changed, volumes, textures}, values, derived(wanted),
+                                  told("derivatives"));
         });
-        std::vector<py::ssize_t> shape;
-        for (const std::size_t side : itself.desc().volumes[volume].array->size)
-            shape.push_back(static_cast<py::ssize_t>(side));
-        return owned(std::move(found), shape);
+        py::list by_voxel, by_texel;
+        for (std::size_t i = 0; i < volumes.size(); ++i) {
+            std::vector<py::ssize_t> shape;
+            for (const std::size_t side : itself.desc().volumes[volumes[i]].array->size)
+                shape.push_back(static_cast<py::ssize_t>(side));
+            by_voxel.append(owned(std::move(found.by_voxel[i]), shape));
+        }
+        for (std::size_t i = 0; i < textures.size(); ++i) {
+            const MeshMaterial& material =
+                itself.desc().geometry[textures[i]].mesh->materials.front();
+            by_texel.append(owned(
+                std::move(found.by_texel[i]),
+                {material.base_map.texture->height(), material.base_map.texture->width(), 3}));
+        }
+        return py::make_tuple(py::cast(found.by_change), by_voxel, by_texel);
     }
 
     void clear() {
@@ -445,10 +528,12 @@ class RendererObject : public RunClient {
         return {wanted.options.window, wanted.seed};
     }
 
-    static ImageScene image_of(const SceneObject& scene, const Wanted& wanted) {
-        SceneDesc desc = *scene.desc();
-        apply_request(wanted.image, desc);
-        return scene_of_image(desc, wanted.choice);
+    static std::vector<ChangedScene> changed_of(const std::vector<Change>& changes,
+                                                const Wanted& wanted) {
+        std::vector<ChangedScene> changed;
+        for (const auto& [name, less, more, step] : changes)
+            changed.push_back({name, image_of(*less, wanted), image_of(*more, wanted), step});
+        return changed;
     }
 
     ShareCallback told(const char* stage) {
@@ -457,14 +542,15 @@ class RendererObject : public RunClient {
 
     /// What `work` makes with the renderer, which has the scene.
     template <class Work>
-    std::vector<float> differentiate(const ImageScene& scene, const py::object& progress,
-                                     const Work& work) {
+    std::invoke_result_t<const Work&, Renderer&> differentiate(const ImageScene& scene,
+                                                               const py::object& progress,
+                                                               const Work& work) {
         const std::unique_lock alone(busy_, std::try_to_lock);
         if (!alone)
             throw UsageError(
                 "derivatives: this Renderer is at work, in another thread or further up; make one "
                 "for each thread");
-        std::vector<float> values;
+        std::invoke_result_t<const Work&, Renderer&> values;
         const auto differentiated = [&](Renderer& renderer) {
             renderer.set_scene(scene);
             values = work(renderer);
@@ -515,14 +601,19 @@ class RendererObject : public RunClient {
 }  // namespace
 
 void bind_renderer(py::module_& module) {
+    module.def("mean_numbers", mean_numbers, py::arg("scene"), py::arg("settings"),
+               py::arg("total"));
+    module.def("number_slopes", number_slopes, py::arg("scene"), py::arg("settings"),
+               py::arg("total"));
     py::class_<RendererObject>(module, "Renderer")
         .def(py::init<int>(), py::arg("threads"))
         .def("render", &RendererObject::render, py::arg("scene"), py::arg("settings"),
              py::arg("progress"))
         .def("derivatives", &RendererObject::derivatives, py::arg("scene"), py::arg("changes"),
              py::arg("settings"), py::arg("progress"))
-        .def("voxel_derivatives", &RendererObject::voxel_derivatives, py::arg("scene"),
-             py::arg("volume"), py::arg("weights"), py::arg("settings"), py::arg("progress"))
+        .def("gradient", &RendererObject::gradient, py::arg("scene"), py::arg("changes"),
+             py::arg("volumes"), py::arg("textures"), py::arg("weights"), py::arg("settings"),
+             py::arg("progress"))
         .def("clear", &RendererObject::clear);
 }
 

@@ -6,12 +6,14 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/geometry/mesh_reader.h"
+#include "core/image/pixel_image.h"
 #include "core/scene/key_path.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/variations.h"
@@ -124,6 +126,12 @@ void SceneObject::set_grid(const std::string& name, std::shared_ptr<const Loaded
     replace(tree_, std::move(arrays));
 }
 
+void SceneObject::set_mesh(const std::string& name, std::shared_ptr<const TriangleMesh> mesh) {
+    SceneArrays arrays = arrays_;
+    arrays.meshes.at(name) = std::move(mesh);
+    replace(tree_, std::move(arrays));
+}
+
 SceneObject SceneObject::variation(int number) const {
     VariedScene varied = variations_of(*this, number).varied(number, &arrays_);
     SceneObject scene;
@@ -229,10 +237,28 @@ void set_array(SceneObject& scene, const std::string& name, const FloatArray& ar
 
 using Corners = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
+/// Linear red, green and blue in rows.
+using TextureArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+PixelImage image_of(const TextureArray& rgb) {
+    return {static_cast<int>(rgb.shape(1)),
+            static_cast<int>(rgb.shape(0)),
+            3,
+            {rgb.data(), rgb.data() + rgb.size()},
+            true};
+}
+
+// `uvs` and `texture`: both, or neither.
 void add_mesh(SceneObject& scene, const std::string& name, const DoubleRows& vertices,
-              const Corners& faces, const py::dict& entry, const std::string& where) {
+              const Corners& faces, const std::optional<DoubleRows>& uvs,
+              const std::optional<TextureArray>& texture, const py::dict& entry,
+              const std::string& where) {
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->positions.assign(vertices.data(), vertices.data() + vertices.size());
+    if (uvs && texture) {
+        mesh->uvs[0].assign(uvs->data(), uvs->data() + uvs->size());
+        mesh->materials = {textured_material(image_of(*texture))};
+    }
     // An index beyond the vertices, or negative, becomes one that no vertex has: it is counted as
     // missing.
     const auto count = static_cast<std::int64_t>(mesh->vertex_count());
@@ -253,6 +279,17 @@ void add_mesh(SceneObject& scene, const std::string& name, const DoubleRows& ver
     SceneArrays arrays;
     arrays.meshes[name] = std::move(mesh);
     scene.append("geometry", std::move(node), std::move(arrays));
+}
+
+void set_texture(SceneObject& scene, const std::string& name, const TextureArray& texture,
+                 const std::string& where) {
+    const auto found = scene.arrays().meshes.find(name);
+    if (found == scene.arrays().meshes.end() || !found->second->materials.front().base_map)
+        throw UsageError(
+            fmt::format("{}: the scene has no mesh '{}' with a texture", where, printable(name)));
+    auto mesh = std::make_shared<TriangleMesh>(*found->second);
+    mesh->materials = {textured_material(image_of(texture))};
+    scene.set_mesh(name, std::move(mesh));
 }
 
 py::tuple state(const SceneObject& scene) {
@@ -316,6 +353,7 @@ void bind_scene(py::module_& module) {
         .def("add_volume", add_volume)
         .def("set_array", set_array)
         .def("add_mesh", add_mesh)
+        .def("set_texture", set_texture)
         .def(
             "variation",
             [](const SceneObject& scene, int number) {

@@ -35,8 +35,9 @@ class SceneObject {
     /// UsageError if something in memory has its name already.
     void append(const std::string& section, ConfigNode entry, SceneArrays arrays);
 
-    /// Puts other values in the place of a grid in memory.
+    /// Puts others in the place of a grid or a mesh in memory.
     void set_grid(const std::string& name, std::shared_ptr<const LoadedGrid> grid);
+    void set_mesh(const std::string& name, std::shared_ptr<const TriangleMesh> mesh);
 
     /// The scene with the values of one of its variations, counted from 0 (SceneVariations).
     /// UsageError if there is none.

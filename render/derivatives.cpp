@@ -10,9 +10,15 @@
 
 #include "core/base/available_memory.h"
 #include "core/base/error.h"
+#include "core/base/random.h"
 #include "core/base/text.h"
+#include "core/geometry/mesh.h"
+#include "core/geometry/textured_surfaces.h"
 #include "core/light/integrator_table.h"
 #include "core/passes/derivative_images.h"
+#include "core/paths/path_gradient.h"
+#include "core/paths/score_gradient.h"
+#include "core/paths/texel_gradient.h"
 #include "media/volumes/voxel_gradient.h"
 #include "media/water/water_model.h"
 #include "render/exposure.h"
@@ -54,6 +60,10 @@ void refuse_other_changes(const std::string& name, const SceneDesc& desc,
     const auto refuse = [&](const char* what) {
         throw UsageError(fmt::format("derivative {}: {}", printable(name), what));
     };
+    if (name.starts_with("camera.sensor"))
+        refuse(
+            "light does not depend on the sensor, and its numbers do; give layer=\"sensor\", and "
+            "they are differentiated");
     for (const char* const key : {"camera", "cameras", "rig", "render", "frames", "sensors"})
         if (name.starts_with(key))
             refuse(
@@ -93,6 +103,12 @@ struct KeptScene {
     std::optional<WaterSurface> water_surface;
 };
 
+/// Whether its light is that of random paths.
+bool is_by_paths(const AssembledScene& scene) {
+    return scene.desc().render.integrator == RenderDesc::Integrator::path ||
+           layer_plan(scene.image, {}).is_provided(Layer::multiple);
+}
+
 /// What `by_paths(pixels, window, draws)` or `by_quadrature(pixels, water, window)` makes of the
 /// renderer's scene, as its light requires.
 template <class ByPaths, class ByQuadrature>
@@ -102,8 +118,7 @@ auto by_light(Renderer& renderer, const DerivativeOptions& options, const ByPath
     const CameraDesc& camera = scene.desc().camera;
     const PixelWindow window =
         options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
-    if (scene.desc().render.integrator == RenderDesc::Integrator::path ||
-        layer_plan(scene.image, {}).is_provided(Layer::multiple)) {
+    if (is_by_paths(scene)) {
         const LightTransport transport = make_path_transport(scene, scene.scattering);
         return by_paths(pixel_renderer(scene, transport), window,
                         Draws{samples_of(scene.desc().render), options.seed});
@@ -130,25 +145,42 @@ std::vector<float> derivative_images(Renderer& renderer, std::span<const SceneCh
 
 }  // namespace
 
+namespace {
+
+/// The renderer's scene and changes of it, which the renderer has assembled. It has the same scene
+/// afterwards.
+class AssembledChanges {
+  public:
+    AssembledChanges(Renderer& renderer, std::span<const ChangedScene> changes) {
+        const ImageScene itself = renderer.scene();
+        const auto assembled = [&](const std::string& name, const ImageScene& image) {
+            refuse_other_changes(name, itself.desc(), image.desc());
+            renderer.set_scene(image);
+            kept_.push_back(std::make_unique<const KeptScene>(renderer.assemble()));
+            return kept_.back()->lit();
+        };
+        for (const ChangedScene& change : changes) {
+            const LitScene less = assembled(change.name, change.less);
+            lit_.push_back({less, assembled(change.name, change.more), change.step});
+        }
+        renderer.set_scene(itself);
+    }
+
+    std::span<const SceneChange> lit() const { return lit_; }
+
+  private:
+    std::vector<std::unique_ptr<const KeptScene>> kept_;
+    std::vector<SceneChange> lit_;
+};
+
+}  // namespace
+
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
                                      const DerivativeOptions& options,
                                      const ShareCallback& progress) {
     refuse_other_images(renderer.assemble(), changes.empty() ? "" : changes.front().name);
-    const ImageScene itself = renderer.scene();
-    std::vector<std::unique_ptr<const KeptScene>> kept;
-    std::vector<SceneChange> lit;
-    const auto assembled = [&](const std::string& name, const ImageScene& image) {
-        refuse_other_changes(name, itself.desc(), image.desc());
-        renderer.set_scene(image);
-        kept.push_back(std::make_unique<const KeptScene>(renderer.assemble()));
-        return kept.back()->lit();
-    };
-    for (const ChangedScene& change : changes) {
-        const LitScene less = assembled(change.name, change.less);
-        lit.push_back({less, assembled(change.name, change.more), change.step});
-    }
-    renderer.set_scene(itself);
-    return derivative_images(renderer, lit, options, progress);
+    const AssembledChanges assembled(renderer, changes);
+    return derivative_images(renderer, assembled.lit(), options, progress);
 }
 
 namespace {
@@ -250,55 +282,150 @@ namespace {
 
 // Copies of the gradient for the parts of an image may take this much memory, or two.
 constexpr double k_gradient_bytes = 256e6;
-constexpr std::size_t k_most_gradients = 16;
+constexpr std::size_t k_most_gradient_parts = 16;
+
+const LoadedGrid& array_of(const SceneDesc& desc, std::size_t volume) {
+    if (volume >= desc.volumes.size() || desc.volumes[volume].array == nullptr)
+        throw UsageError(
+            fmt::format("derivative volumes[{}].array: only of the voxels of volumes in memory; "
+                        "read the file's grid as an array and add that to the scene",
+                        volume));
+    return *desc.volumes[volume].array;
+}
+
+const Texture& texture_of(const SceneDesc& desc, std::size_t entry) {
+    const auto refuse = [&](const char* what) {
+        throw UsageError(fmt::format("derivative geometry[{}].texture: {}", entry, what));
+    };
+    if (entry >= desc.geometry.size() || desc.geometry[entry].mesh == nullptr ||
+        !desc.geometry[entry].mesh->materials.front().base_map)
+        refuse("only of textures in memory; add the mesh with a texture to the scene");
+    if (desc.geometry[entry].reflectance)
+        refuse("the scene gives the surface one reflectance in its place; take that out");
+    return *desc.geometry[entry].mesh->materials.front().base_map.texture;
+}
+
+std::size_t voxel_count(const LoadedGrid& grid) {
+    return grid.size[0] * grid.size[1] * grid.size[2];
+}
+
+/// All that the derivatives of a request are gathered in, part by part of the image.
+class GradientParts {
+  public:
+    /// `draws`: of each ray's nodes a few stand for all.
+    GradientParts(const AssembledScene& scene, const GradientRequest& by,
+                  std::span<const SceneChange> changes, const std::optional<Draws>& draws)
+        : tables_(scene.lit()), changed_(scene.lit(), changes) {
+        const SceneDesc& desc = scene.desc();
+        double bytes = 0;
+        for (const std::size_t volume : by.volumes)
+            bytes += 8.0 * static_cast<double>(voxel_count(array_of(desc, volume)));
+        for (const std::size_t entry : by.textures) {
+            const Texture& texture = texture_of(desc, entry);
+            constexpr double k_with_halves = 4.0 / 3;
+            bytes += 8.0 * 3 * k_with_halves * texture.width() * texture.height();
+        }
+        const auto parts = static_cast<std::size_t>(std::clamp(
+            k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_most_gradient_parts}));
+        require_memory(bytes * static_cast<double>(parts),
+                       "the derivatives by voxel and texel need", "use fewer of them");
+        for (std::size_t part = 0; part < parts; ++part) {
+            std::optional<std::uint64_t> seed;
+            if (draws) seed = PathRandom::seed_of(part, static_cast<std::uint64_t>(draws->seed));
+            add_part(scene, by, seed);
+        }
+    }
+
+    std::span<const PartGradients> parts() const { return parts_; }
+
+    SceneGradient sums() const {
+        SceneGradient result;
+        for (const ScoreGradient* part : by_change_) {
+            result.by_change.resize(part->by_change().size());
+            for (std::size_t i = 0; i < part->by_change().size(); ++i)
+                result.by_change[i] += part->by_change()[i];
+        }
+        for (const auto& of_parts : by_voxel_)
+            result.by_voxel.push_back(
+                sum(of_parts, [](const VoxelGradient& part) { return part.values(); }));
+        for (const auto& of_parts : by_texel_)
+            result.by_texel.push_back(
+                sum(of_parts, [](const TexelGradient& part) { return part.by_texel(); }));
+        return result;
+    }
+
+  private:
+    void add_part(const AssembledScene& scene, const GradientRequest& by,
+                  std::optional<std::uint64_t> seed) {
+        PartGradients& gradients = parts_.emplace_back();
+        const auto add = [&](auto gradient) {
+            const auto* const added = gradient.get();
+            gradients.push_back(std::move(gradient));
+            return added;
+        };
+        if (!by.changes.empty())
+            by_change_.push_back(add(std::make_unique<ScoreGradient>(changed_, seed)));
+        by_voxel_.resize(by.volumes.size());
+        for (std::size_t i = 0; i < by.volumes.size(); ++i) {
+            const std::size_t volume = by.volumes[i];
+            voxels_.push_back(std::make_unique<VoxelGradient>(scene.volumes[volume].grids.front(),
+                                                              array_of(scene.desc(), volume).size));
+            by_voxel_[i].push_back(voxels_.back().get());
+            add(std::make_unique<PathGradient>(tables_, *voxels_.back()));
+        }
+        by_texel_.resize(by.textures.size());
+        for (std::size_t i = 0; i < by.textures.size(); ++i)
+            by_texel_[i].push_back(add(std::make_unique<TexelGradient>(
+                *textures_of(*scene.surfaces), texture_of(scene.desc(), by.textures[i]),
+                changed_.bands())));
+    }
+
+    template <class Gradient, class Values>
+    static std::vector<float> sum(const std::vector<const Gradient*>& parts, const Values& values) {
+        std::vector<double> total;
+        for (const Gradient* part : parts) {
+            const auto& of_part = values(*part);
+            total.resize(of_part.size());
+            for (std::size_t i = 0; i < of_part.size(); ++i) total[i] += of_part[i];
+        }
+        return {total.begin(), total.end()};
+    }
+
+    GradientTables tables_;
+    ChangedScenes changed_;
+    std::vector<PartGradients> parts_;
+    std::vector<std::unique_ptr<VoxelGradient>> voxels_;
+    std::vector<const ScoreGradient*> by_change_;              // of each part
+    std::vector<std::vector<const VoxelGradient*>> by_voxel_;  // of each volume, of each part
+    std::vector<std::vector<const TexelGradient*>> by_texel_;  // of each texture
+};
 
 }  // namespace
 
-std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
-                                     std::span<const double> weights,
-                                     const DerivativeOptions& options,
-                                     const ShareCallback& progress) {
+SceneGradient scene_gradient(Renderer& renderer, const GradientRequest& by,
+                             std::span<const double> weights, const DerivativeOptions& options,
+                             const ShareCallback& progress) {
+    refuse_other_images(renderer.assemble(),
+                        by.changes.empty() ? "by voxel or texel" : by.changes.front().name);
+    const AssembledChanges changes(renderer, by.changes);
     const AssembledScene& scene = renderer.assemble();
-    refuse_other_images(scene, fmt::format("volumes[{}].array", volume));
-    const std::vector<VolumeDesc>& volumes = scene.desc().volumes;
-    if (volume >= volumes.size() || volumes[volume].array == nullptr)
-        throw UsageError(
-            "derivatives: only of the voxels of volumes in memory; read the file's grid as an "
-            "array and add that to the scene");
-    const std::array<std::size_t, 3> size = volumes[volume].array->size;
-    const double bytes = 8.0 * static_cast<double>(size[0] * size[1] * size[2]);
-    const auto parts = static_cast<std::size_t>(
-        std::clamp(k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_most_gradients}));
-    require_memory(bytes * static_cast<double>(parts), "the derivatives by voxel need",
-                   "use fewer voxels");
-    std::vector<std::unique_ptr<FieldGradient>> gradients;
-    std::vector<const VoxelGradient*> by_part;
-    for (std::size_t i = 0; i < parts; ++i) {
-        auto part = std::make_unique<VoxelGradient>(scene.volumes[volume].grids.front(), size);
-        by_part.push_back(part.get());
-        gradients.push_back(std::move(part));
-    }
+    std::optional<Draws> draws;
+    if (scene.desc().render.quality != RenderDesc::Quality::exact && !is_by_paths(scene))
+        draws = {.seed = options.seed};
+    const GradientParts gradients(scene, by, changes.lit(), draws);
     const auto weights_of = [&](const PixelWindow& window) {
         return PixelWeights{window, scene.desc().water.bands_nm.size(), weights};
     };
     by_light(
         renderer, options,
-        [&](const PixelRenderer& pixels, const PixelWindow& window, const Draws& draws) {
-            path_gradient(pixels, weights_of(window), draws, gradients, progress);
+        [&](const PixelRenderer& pixels, const PixelWindow& window, const Draws& paths) {
+            path_gradient(pixels, weights_of(window), paths, gradients.parts(), progress);
         },
         [&](const PixelRenderer& pixels, const VolumeIntegrator& water, const PixelWindow& window) {
-            std::optional<Draws> draws;
-            if (scene.desc().render.quality != RenderDesc::Quality::exact)
-                draws = {.seed = options.seed};
-            quadrature_gradient(pixels, water, weights_of(window), draws, gradients, progress);
+            quadrature_gradient(pixels, water, weights_of(window), draws, gradients.parts(),
+                                progress);
         });
-    std::vector<float> sums(by_part.front()->values().size());
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-        double sum = 0;
-        for (const VoxelGradient* part : by_part) sum += part->values()[i];
-        sums[i] = static_cast<float>(sum);
-    }
-    return sums;
+    return gradients.sums();
 }
 
 }  // namespace uw

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -54,14 +55,29 @@ std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::st
                                      const DerivativeOptions& options,
                                      const ShareCallback& progress);
 
-/// The derivatives of a number by the values of a grid that is in memory (VolumeDesc::array), from
-/// its derivatives by the light of the pixels of options.window, row by row, `weights`
-/// [pixel][band]: by value (i, j, k), [(i * size[1] + j) * size[2] + k] of LoadedGrid::size. As
-/// scene_derivatives; where nothing scatters, it is as if nothing were added that does. Throws
-/// UsageError if volume `volume` is none in memory.
-std::vector<float> voxel_derivatives(Renderer& renderer, std::size_t volume,
-                                     std::span<const double> weights,
-                                     const DerivativeOptions& options,
-                                     const ShareCallback& progress);
+/// What a number is differentiated by, all in one pass over the image.
+struct GradientRequest {
+    std::span<const ChangedScene> changes{};  ///< as of scene_derivatives
+    std::span<const std::size_t> volumes{};  ///< the values of these, in memory (VolumeDesc::array)
+    std::span<const std::size_t> textures{};  ///< those of these entries of geometry, in memory
+};
+
+struct SceneGradient {
+    std::vector<double> by_change;
+    /// By value (i, j, k) of each volume: [(i * size[1] + j) * size[2] + k] of LoadedGrid::size.
+    std::vector<std::vector<float>> by_voxel;
+    /// By texel of each texture: [(row * width + column) * 3 + colour], linear red, green and blue.
+    std::vector<std::vector<float>> by_texel;
+};
+
+/// The derivatives of a number from its derivatives by the light of the pixels of options.window,
+/// row by row, `weights` [pixel][band]: the transpose of scene_derivatives. Unless the image's
+/// quality is exact, some nodes of each ray stand for all, without bias: the time hardly depends on
+/// how many numbers there are. Where nothing scatters or reflects, it is as if nothing were added
+/// that does. Throws UsageError for volumes and textures that are not in memory, and as
+/// scene_derivatives.
+SceneGradient scene_gradient(Renderer& renderer, const GradientRequest& by,
+                             std::span<const double> weights, const DerivativeOptions& options,
+                             const ShareCallback& progress);
 
 }  // namespace uw

@@ -11,9 +11,13 @@ extern "C" __attribute__((visibility("default"))) void uwvdb_find_board(
                         const_cast<unsigned char*>(picture.values.data()));
     std::vector<cv::Point2f> found;
     try {
-        if (!cv::findChessboardCornersSB(
-                image, {board.columns, board.rows}, found,
-                cv::CALIB_CB_NORMALIZE_IMAGE | cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY))
+        // As it is, and with its histogram evened out: that finds boards in a veil, and loses those
+        // that lamps light before the dark.
+        const cv::Size size(board.columns, board.rows);
+        constexpr int k_flags = cv::CALIB_CB_EXHAUSTIVE | cv::CALIB_CB_ACCURACY;
+        if (!cv::findChessboardCornersSB(image, size, found, k_flags) &&
+            !cv::findChessboardCornersSB(image, size, found,
+                                         k_flags | cv::CALIB_CB_NORMALIZE_IMAGE))
             return;
     } catch (const cv::Exception&) {
         return;  // pictures too small to hold it

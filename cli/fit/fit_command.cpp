@@ -48,7 +48,9 @@ the image shows them [pixels; the image's corner is (0, 0)], in water, in air be
 or bare, without a port. Poses are found with the rest. With --board OpenCV finds the corners of a
 checkerboard in photographs. Without, pictures are held against the images of the
 scene, frame by frame, cell by cell: raw numbers if its camera has a sensor, else light (OpenEXR) or
-what sRGB makes of it (PNG, JPEG). --target writes a sheet with a board to print, and needs no scene.
+what sRGB makes of it (PNG, JPEG). --target writes a sheet with a board to print, and needs no scene;
+--found-poses of pictures of that board are the --poses by which its surface (--target board.obj) is
+held against the same pictures.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted.)";
 
@@ -73,7 +75,8 @@ Assumption read_assumption(const std::string& option, const std::string& text,
 }
 
 struct FitArguments {
-    std::filesystem::path scene, points, images, poses, corners, output, page, csv, target;
+    std::filesystem::path scene, points, images, poses, corners, found_poses, output, page, csv,
+        target;
     std::optional<Paper> paper;
     std::optional<BoardDesc> board;
     std::vector<std::string> overrides, unknowns;
@@ -100,6 +103,9 @@ Options fit_options(FitArguments& a) {
         "the photographs show a checkerboard with so many inner corners, whose squares have this "
         "side [m]: its corners are what is observed");
     options.path("--corners", "FILE.csv", a.corners, "write the corners found with --board");
+    options.path("--found-poses", "POSES.json", a.found_poses,
+                 "write where the camera was in each picture, in the board's axes, as --poses "
+                 "reads it");
     options.integer("--cells", "N", a.cells, 4, 4096,
                     "cells across a picture whose mean light is compared");
     Option& unknown = options.parsed(
@@ -151,8 +157,8 @@ Options fit_options(FitArguments& a) {
                  "write the scene with what was found, all else as it is");
     options.path("--report", "PAGE.html", a.page, "write a page with tables and plots");
     options.path("--csv", "FILE", a.csv, "write all residuals as a table");
-    options.path("--target", "SHEET.pdf", a.target,
-                 "write a sheet to print, with a checkerboard, and end");
+    options.path("--target", "SHEET.pdf|SHEET.obj", a.target,
+                 "write a sheet to print, with a checkerboard, or its surface for scenes, and end");
     Option& paper = options.parsed(
         "--paper", "SIZE", [&a](const std::string& text) { a.paper = read_paper(text); },
         "paper of --target: a4 (as it is if omitted), a3 or letter");
@@ -201,12 +207,16 @@ void begin_exposures(SceneUnknowns& unknowns, PictureResiduals& pictures) {
             unknowns.begin_at(i, exposures[unknowns.all()[i].picture]);
 }
 
-/// The scene's text with what was found, and all else as it was.
+/// The scene's text with what --set changed and what was found, and all else as it was.
 std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
                         const FitResult& result) {
     SceneText text(
         read_text_file(a.scene, a.scene.filename().string(), YamlLimits{}.bytes, "scene"),
         a.scene.filename().string());
+    for (const std::string& change : a.overrides) {
+        const std::size_t equals = change.find('=');
+        text.set(change.substr(0, equals), change.substr(equals + 1));
+    }
     std::vector<double> values;
     for (const FoundValue& found : result.values) values.push_back(found.value);
     for (const auto& [path, value] : unknowns.settings(values)) text.set(path, value);
@@ -219,7 +229,16 @@ void write_target(const FitArguments& a) {
             "--target: writes a sheet to print, and fits nothing; leave the scene out");
     const Paper paper = a.paper ? *a.paper : read_paper("a4");
     TextFiles files;
-    files.add(a.target, target_pdf(a.board ? *a.board : board_for(paper), paper));
+    const BoardDesc board = a.board ? *a.board : board_for(paper);
+    if (a.target.extension() == ".obj") {
+        std::filesystem::path materials = a.target;
+        materials.replace_extension(".mtl");
+        TargetMesh mesh = target_mesh(board, paper, materials.filename().string());
+        files.add(a.target, std::move(mesh.obj));
+        files.add(materials, std::move(mesh.mtl));
+    } else {
+        files.add(a.target, target_pdf(board, paper));
+    }
     files.commit(a.quiet);
 }
 
@@ -237,6 +256,9 @@ void run_fit(const FitArguments& a) {
         throw UsageError("--board: is looked for in --images; give these instead of --points");
     if (!a.corners.empty() && !a.board)
         throw UsageError("--corners: are those of a board; give its --board, such as 9x6x0.03");
+    if (!a.found_poses.empty() && a.points.empty() && !a.board)
+        throw UsageError(
+            "--found-poses: are found from corners; give --board, or a table of --points");
     if (!a.poses.empty() && (a.board || a.images.empty()))
         throw UsageError(
             "--poses: are those of --images without --board; of corners poses are found");
@@ -258,16 +280,21 @@ void run_fit(const FitArguments& a) {
     options.keeps_outliers = a.keeps_outliers;
     std::unique_ptr<Observations> observations;
     const PictureResiduals* pictures = nullptr;
+    const PointResiduals* points = nullptr;
     TextFiles files;
     if (!a.points.empty()) {
-        observations = std::make_unique<PointResiduals>(
+        auto seen = std::make_unique<PointResiduals>(
             unknowns, read_seen_points(read_csv_file(a.points, "--points")));
+        points = seen.get();
+        observations = std::move(seen);
     } else if (a.board) {
         std::vector<std::filesystem::path> pictures_of_it;
         for (const ObservedPicture& picture : seen_pictures) pictures_of_it.push_back(picture.file);
         PointTable corners = find_board_corners(pictures_of_it, *a.board, warn);
         if (!a.corners.empty()) files.add(a.corners, point_csv(corners));
-        observations = std::make_unique<PointResiduals>(unknowns, std::move(corners));
+        auto seen = std::make_unique<PointResiduals>(unknowns, std::move(corners));
+        points = seen.get();
+        observations = std::move(seen);
     } else {
         auto seen = std::make_unique<PictureResiduals>(unknowns, std::move(seen_pictures), a.cells);
         begin_exposures(unknowns, *seen);
@@ -288,6 +315,8 @@ void run_fit(const FitArguments& a) {
     const FitReport report(*observations, pictures, result);
     if (!a.csv.empty()) files.add(a.csv, report.csv());
     if (!a.page.empty()) files.add(a.page, report.page(a.scene.filename().string()));
+    if (!a.found_poses.empty())
+        files.add(a.found_poses, transforms_json(points->images(), points->poses(result.blocks)));
     if (!a.output.empty()) files.add(a.output, fitted_text(a, unknowns, result));
     files.commit(a.quiet);
     print_output(report.printed(a.json));

@@ -57,6 +57,13 @@ class EmbreeSurfaces final : public Surfaces, public TexturedSurfaces {
             filter_mesh(objects_.placed(hit.geometry), objects_.bands, spread, hit);
     }
 
+    void add_to_texture(const SurfaceHit& hit, std::span<const double> by_reflectance,
+                        TextureGradient& gradient) const override {
+        if (hit.geometry < objects_.placed_count())
+            add_to_texture_of_mesh(objects_.placed(hit.geometry), objects_.bands, hit,
+                                   by_reflectance, gradient);
+    }
+
     double hit_distance(const Ray& ray) const override {
         return find_nearest(ray, k_infinity).distance;
     }
@@ -135,6 +142,7 @@ class EmbreeSurfaces final : public Surfaces, public TexturedSurfaces {
         if (!(nearest.distance <= s_end) || nearest.distance == k_infinity) return false;
         hit.distance = nearest.distance;
         hit.position = ray.at(nearest.distance);
+        hit.spread = {};
         if (nearest.plane != nullptr) {
             shade_plane(*nearest.plane, ray.direction, hit);
             hit.geometry = k_no_mesh;

@@ -21,6 +21,8 @@ class MeshPlace {
     const MeshMaterial& material() const { return *material_; }
     /// Linear RGB 0..1.
     Rgb base_color() const;
+    /// The transpose of that, for texels of the base map if it is the gradient's texture.
+    void add_base_color(const Rgb& weights, TextureGradient& gradient) const;
     /// Whether the surface has a hole here (MeshMaterial::alpha_cutoff).
     bool is_hole() const;
     /// Radiance [W m^-2 sr^-1], in linear RGB.
@@ -36,6 +38,7 @@ class MeshPlace {
 
   private:
     Rgb sample(const TextureUse& use) const;
+    TextureSpread spread_on(const TextureUse& use) const;
     /// A vector of the triangle's plane, in world space, as a sum of the edges from its corner 0.
     std::array<double, 2> in_edges(const Vector3& v) const;
     /// Weighted means over the corners.
@@ -119,9 +122,9 @@ Vector3 MeshPlace::corner_tangent(std::size_t k) const {
     return transform_ == nullptr ? tangent : unit_or_zero(in_world(tangent));
 }
 
-Rgb MeshPlace::sample(const TextureUse& use) const {
+TextureSpread MeshPlace::spread_on(const TextureUse& use) const {
+    if (!is_spread_) return {};
     const std::vector<float>& uvs = mesh_->uvs[use.uv_set];
-    if (!is_spread_) return use.sample(mean(uvs, 2, 0), mean(uvs, 2, 1));
     const auto edge = [&](std::size_t k, std::size_t component) {
         return static_cast<double>(uvs[2 * std::size_t{corners_[k]} + component]) -
                static_cast<double>(uvs[2 * std::size_t{corners_[0]} + component]);
@@ -130,7 +133,25 @@ Rgb MeshPlace::sample(const TextureUse& use) const {
         return std::array<double, 2>{side[0] * edge(1, 0) + side[1] * edge(2, 0),
                                      side[0] * edge(1, 1) + side[1] * edge(2, 1)};
     };
-    return use.sample(mean(uvs, 2, 0), mean(uvs, 2, 1), {in_texture(across_), in_texture(down_)});
+    return {in_texture(across_), in_texture(down_)};
+}
+
+Rgb MeshPlace::sample(const TextureUse& use) const {
+    const std::vector<float>& uvs = mesh_->uvs[use.uv_set];
+    const double u = mean(uvs, 2, 0), v = mean(uvs, 2, 1);
+    return is_spread_ ? use.sample(u, v, spread_on(use)) : use.sample(u, v);
+}
+
+void MeshPlace::add_base_color(const Rgb& weights, TextureGradient& gradient) const {
+    const TextureUse& use = material_->base_map;
+    if (use.texture.get() != &gradient.texture()) return;
+    Rgb of_texture = weights;
+    for (std::size_t i = 0; i < 3; ++i) {
+        of_texture[i] *= material_->base_color[i];
+        if (!mesh_->colors.empty()) of_texture[i] *= mean(mesh_->colors, 3, i);
+    }
+    const std::vector<float>& uvs = mesh_->uvs[use.uv_set];
+    use.add_to(gradient, mean(uvs, 2, 0), mean(uvs, 2, 1), spread_on(use), of_texture);
 }
 
 Rgb MeshPlace::base_color() const {
@@ -354,6 +375,19 @@ void filter_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands, const Su
     if (!mesh.object.has_textures) return;
     const MeshPlace place(mesh.object.mesh, hit.triangle, hit.u, hit.v, mesh.transform(), spread);
     shade_with_textures(mesh.object, place, bands, hit);
+    hit.spread = spread;
+}
+
+void add_to_texture_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands,
+                            const SurfaceHit& hit, std::span<const double> by_reflectance,
+                            TextureGradient& gradient) {
+    const MeshObject& object = mesh.object;
+    if (!object.has_textures || object.reflectance) return;
+    const MeshPlace place(object.mesh, hit.triangle, hit.u, hit.v, mesh.transform(), hit.spread);
+    Rgb by_color = bands.by_rgb(by_reflectance);
+    if (object.is_pbr)
+        for (double& value : by_color) value *= 1 - place.roughness_metallic()[1];
+    place.add_base_color(by_color, gradient);
 }
 
 SurfaceMaterial material_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/base/ray.h"
@@ -147,6 +148,11 @@ std::optional<double> cross_plane(const PlaneObject& plane, const Point3& origin
 /// and the normals are turned to face it.
 void shade_mesh(const PlacedMesh& mesh, std::uint32_t triangle, const TriangleCrossing& crossing,
                 const ReflectanceBands& bands, const Vector3& direction, SurfaceHit& hit);
+
+/// TexturedSurfaces::add_to_texture for the hit of a mesh.
+void add_to_texture_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands,
+                            const SurfaceHit& hit, std::span<const double> by_reflectance,
+                            TextureGradient& gradient);
 
 /// TexturedSurfaces::filter_textures for the hit of a mesh (SurfaceHit::triangle).
 void filter_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands, const SurfaceSpread& spread,

@@ -31,6 +31,12 @@ struct SurfaceMaterial {
     Spectrum f0{};           // reflectance at normal incidence, in water
 };
 
+/// The parallelogram of a surface that a hit stands for, around it: between the tangents at the
+/// hit, in world space [m]. Both zero: the hit is a point.
+struct SurfaceSpread {
+    Vector3 across{0.0}, down{0.0};
+};
+
 /// Where a ray hits a surface. World space.
 struct SurfaceHit {
     double distance = 0;  // along the ray [m]
@@ -45,6 +51,7 @@ struct SurfaceHit {
     // For Surfaces::material: the triangle and the position on it.
     std::uint32_t geometry = 0, triangle = 0;
     double u = 0, v = 0;
+    SurfaceSpread spread{};  // over which its textures were taken
 };
 
 /// The opaque surfaces of a scene, which stop camera rays and cast shadows. Thread safe.

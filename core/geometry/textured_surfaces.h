@@ -1,15 +1,12 @@
 #pragma once
 
-#include "core/base/vector_math.h"
+#include <span>
+
 #include "core/geometry/surfaces.h"
 
 namespace uw {
 
-/// The parallelogram of a surface that a hit stands for, around it: between the tangents at the
-/// hit, in world space [m]. Both zero: the hit is a point.
-struct SurfaceSpread {
-    Vector3 across{0.0}, down{0.0};
-};
+class TextureGradient;  // core/geometry/texture.h
 
 /// Surfaces of which some have textures. What is hit is shaded at a point; who knows that a hit
 /// stands for more than that has its textures taken over all of it.
@@ -22,6 +19,10 @@ class TexturedSurfaces {
     /// by their means over `spread`. Where that covers less than a texel nothing changes, and
     /// neither does what Surfaces::material says.
     virtual void filter_textures(const SurfaceSpread& spread, SurfaceHit& hit) const = 0;
+    /// Hands the derivatives of a number by the reflectance of a hit, by band, back to the texels
+    /// that it was taken from, if they are those of the gradient's texture.
+    virtual void add_to_texture(const SurfaceHit& hit, std::span<const double> by_reflectance,
+                                TextureGradient& gradient) const = 0;
 };
 
 /// The same surfaces if they have textures, else null.

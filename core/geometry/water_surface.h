@@ -82,6 +82,8 @@ class WaterSurface {
     const Vector3& across() const { return across_; }
     const Vector3& along() const { return along_; }
 
+    friend bool operator==(const WaterSurface&, const WaterSurface&) = default;
+
   private:
     Point3 point_;
     Vector3 up_, across_, along_;

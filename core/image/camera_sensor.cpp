@@ -175,6 +175,29 @@ double SensorReadout::number(double photoelectrons, int x, int y, std::size_t co
     return std::clamp(number, 0.0, desc_.white_level());
 }
 
+MeanNumbers::MeanNumbers(const SceneDesc& scene)
+    : photoelectrons_(scene), sensor_(*scene.camera.sensor) {}
+
+double MeanNumbers::electrons(const Spectrum& irradiance, std::size_t colour) const {
+    return photoelectrons_.mean(irradiance, colour) +
+           sensor_.dark_current * sensor_.exposure.value();
+}
+
+double MeanNumbers::at(const Spectrum& irradiance, std::size_t colour) const {
+    double number = electrons(irradiance, colour);
+    if (sensor_.full_well) number = std::min(number, *sensor_.full_well);
+    return sensor_.system_gain() * number + sensor_.black_level;
+}
+
+double MeanNumbers::slope(const Spectrum& irradiance, std::size_t colour, std::size_t band) const {
+    if (sensor_.full_well && electrons(irradiance, colour) > *sensor_.full_well) return 0;
+    return sensor_.system_gain() * photoelectrons_.per_irradiance(colour, band);
+}
+
+double MeanNumbers::dark() const {
+    return at({}, 0);
+}
+
 std::size_t colour_at(SensorMosaic mosaic, int x, int y) {
     // The colours at (0, 0), (1, 0), (0, 1), (1, 1).
     constexpr std::size_t r = 0, g = 1, b = 2;

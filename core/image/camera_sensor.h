@@ -35,6 +35,10 @@ class Photoelectrons {
         return port_factor_ * lens_.pixel_factor({lens_ray.falloff, 1}, 1 / focus_vergence);
     }
 
+    /// The mean number in a pixel of this colour per irradiance in a band.
+    double per_irradiance(std::size_t colour, std::size_t band) const {
+        return per_irradiance_[colour][band];
+    }
     /// The mean number in a pixel of this colour.
     double mean(const Spectrum& irradiance, std::size_t colour) const {
         double sum = 0;
@@ -75,6 +79,28 @@ class SensorReadout {
     SensorDesc desc_;
     double gain_, dark_electrons_;
     std::uint64_t fixed_seed_, image_seed_;
+};
+
+/// What the digital numbers of a scene's sensor are in the mean, before they are rounded: those of
+/// SensorReadout without noise.
+class MeanNumbers {
+  public:
+    /// As Photoelectrons. Precondition: the camera has a sensor with an exposure time.
+    explicit MeanNumbers(const SceneDesc& scene);
+
+    /// In a pixel of this colour; Photoelectrons::irradiance_factor times the radiance in water.
+    double at(const Spectrum& irradiance, std::size_t colour) const;
+    /// How they grow with the irradiance in a band; not at all in a full well.
+    double slope(const Spectrum& irradiance, std::size_t colour, std::size_t band) const;
+    /// Without light.
+    double dark() const;
+    const Photoelectrons& photoelectrons() const { return photoelectrons_; }
+
+  private:
+    double electrons(const Spectrum& irradiance, std::size_t colour) const;
+
+    Photoelectrons photoelectrons_;
+    SensorDesc sensor_;
 };
 
 /// Which colour pixel (x, y) of a mosaic sees: 0 red, 1 green, 2 blue. 0 for other sensors.

@@ -172,6 +172,9 @@ class Lamp {
     void append_profile_breaks(const Ray& ray, const Interval& stretch,
                                std::vector<double>& s) const;
 
+    /// Of the same name, place, light and so on.
+    friend bool operator==(const Lamp&, const Lamp&) = default;
+
   private:
     void append_focus_breaks(const Ray& ray, const Interval& stretch, std::vector<double>& s) const;
     Interval below_surface(const Ray& ray, const Interval& stretch) const;

@@ -10,6 +10,8 @@ namespace uw {
 /// A point of the unit cube; only a sphere depends on its third coordinate.
 struct UnitPoint {
     double u = 0, v = 0, w = 0;
+
+    friend bool operator==(const UnitPoint&, const UnitPoint&) = default;
 };
 
 /// A luminous surface in the world, or the disc of a sun: there the unit is the sine of the angle
@@ -29,6 +31,8 @@ struct LampFrame {
     Vector3 at(const UnitPoint& place) const;
 
     bool is_flat() const { return extent.shape != LampExtentDesc::Shape::sphere; }
+
+    friend bool operator==(const LampFrame&, const LampFrame&) = default;
 };
 
 /// The part of a luminous surface that one of the points which stand for it stands for. The patches
@@ -42,6 +46,8 @@ struct LampPatch {
 
     /// The point that belongs to a point of the unit cube, as seen from the surface's centre [m].
     Vector3 at(const UnitPoint& place) const;
+
+    friend bool operator==(const LampPatch&, const LampPatch&) = default;
 };
 
 /// Divides a surface into a patch around each of the points that belong to `places`, or close to

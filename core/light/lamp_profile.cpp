@@ -301,6 +301,24 @@ IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placeme
 
 namespace {
 
+IesFile rotational(const TableProfileDesc& desc) {
+    IesFile file;
+    file.polar = desc.angles;
+    file.planes = {0};
+    file.candelas = desc.values;
+    return file;
+}
+
+}  // namespace
+
+TableProfile::TableProfile(const TableProfileDesc& desc, const LampPlacement& placement)
+    : angles_(desc.angles),
+      values_(desc.values),
+      greatest_(std::ranges::max(desc.values)),
+      of_greatest_({}, placement, std::make_shared<const PhotometricWeb>(rotational(desc))) {}
+
+namespace {
+
 template <class... Profiles>
 constexpr bool all_are_profiles(const std::variant<Profiles...>* /*type*/) {
     return (IsALampProfile<Profiles> && ...);

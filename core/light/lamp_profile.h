@@ -94,6 +94,8 @@ class IsotropicProfile {
     DirectionCone cone() const { return {}; }
     void append_breaks(const Ray& /*ray*/, const Interval& /*stretch*/, const Point3& /*apex*/,
                        std::vector<double>& /*s*/) const {}
+
+    friend bool operator==(const IsotropicProfile&, const IsotropicProfile&) = default;
 };
 
 inline IsotropicProfile make_profile(const IsotropicProfileDesc& /*desc*/,
@@ -117,6 +119,8 @@ class SpotProfile {
     DirectionCone cone() const { return {axis_, cos_dark_}; }
     void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
                        std::vector<double>& s) const;
+
+    friend bool operator==(const SpotProfile&, const SpotProfile&) = default;
 
   private:
     Vector3 axis_;
@@ -148,6 +152,8 @@ class CosineProfile {
     void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
                        std::vector<double>& s) const;
 
+    friend bool operator==(const CosineProfile&, const CosineProfile&) = default;
+
   private:
     Vector3 axis_;
     double exponent_;  // m
@@ -178,10 +184,13 @@ class IesProfile {
     double relative_intensity(const Vector3& v) const;
     double solid_angle() const { return web_->flux() / web_->peak(); }
     std::optional<double> peak_candelas() const { return web_->peak(); }
+    const Vector3& axis() const { return axis_; }
     bool has_even_core() const { return false; }
     DirectionCone cone() const { return {axis_, cos_dark_}; }
     void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
                        std::vector<double>& s) const;
+
+    friend bool operator==(const IesProfile&, const IesProfile&) = default;
 
   private:
     std::shared_ptr<const PhotometricWeb> web_;
@@ -192,6 +201,41 @@ class IesProfile {
     std::vector<Vector3> half_planes_;  // azimuthal directions at which the profile has breaks
 };
 
+/// A profile by a table over the angle from the axis (IsALampProfile).
+class TableProfile {
+  public:
+    static constexpr std::string_view k_name = "table";
+
+    TableProfile(const TableProfileDesc& desc, const LampPlacement& placement);
+
+    double relative_intensity(const Vector3& v) const {
+        return greatest_ * of_greatest_.relative_intensity(v);
+    }
+    double solid_angle() const { return greatest_ * of_greatest_.solid_angle(); }
+    std::optional<double> peak_candelas() const { return std::nullopt; }
+    bool has_even_core() const { return false; }
+    DirectionCone cone() const { return of_greatest_.cone(); }
+    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                       std::vector<double>& s) const {
+        of_greatest_.append_breaks(ray, stretch, apex, s);
+    }
+
+    friend bool operator==(const TableProfile& a, const TableProfile& b) {
+        return a.values_ == b.values_ && a.angles_ == b.angles_ &&
+               a.of_greatest_.axis() == b.of_greatest_.axis();
+    }
+
+  private:
+    std::vector<double> angles_, values_;
+    double greatest_;
+    IesProfile of_greatest_;  // relative to the greatest value
+};
+
+inline TableProfile make_profile(const TableProfileDesc& desc, const LampPlacement& placement,
+                                 std::vector<std::string>& /*warnings*/) {
+    return {desc, placement};
+}
+
 /// Reads the file. Adds a one-line warning if its candelas are inconsistent with its lumens. Throws
 /// InputError for a file that is not LM-63, IoError for one that cannot be read.
 IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placement,
@@ -200,7 +244,8 @@ IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placeme
 /// All profiles, placed in the world: how a lamp's radiant intensity depends on direction. There is
 /// one for each alternative of LampProfileDesc, and beside it a function `make_profile` that
 /// constructs it from its description.
-using LampProfile = std::variant<IsotropicProfile, SpotProfile, CosineProfile, IesProfile>;
+using LampProfile =
+    std::variant<IsotropicProfile, SpotProfile, CosineProfile, TableProfile, IesProfile>;
 
 /// Makes the profile that `desc` describes. Reads the files it needs; adds warnings and throws as
 /// that profile's make_profile does.

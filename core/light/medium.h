@@ -109,6 +109,8 @@ struct AttenuationTable {
     }
     /// e^-tau of every band.
     Spectrum transmittance(double length, std::span<const double> columns) const;
+
+    friend bool operator==(const AttenuationTable&, const AttenuationTable&) = default;
 };
 
 /// All phase functions of a medium, tabulated for the integrators' inner loop over h = tan(psi /
@@ -122,6 +124,8 @@ class PhaseTable {
     /// p_m of phase function m at each `half_tangent` >= 0 (infinity: psi = pi), into
     /// p[m * half_tangent.size() + i] [1/sr].
     void evaluate(std::span<const double> half_tangent, std::span<double> p) const;
+
+    friend bool operator==(const PhaseTable&, const PhaseTable&) = default;
 
   private:
     std::size_t phases_;

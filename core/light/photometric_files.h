@@ -29,7 +29,7 @@ IesFile parse_ies(std::string_view text, const std::string& name);
 /// The same for a file of at most 4 MiB. Throws IoError if it cannot be read.
 IesFile read_ies(const std::filesystem::path& file);
 
-/// The luminous intensity of a luminaire in every direction, from an IES file: interpolated
+/// The luminous intensity of a luminaire in every direction, of an IES file's kind: interpolated
 /// linearly in both angles, symmetries unfolded to the full circle, 0 outside the file's vertical
 /// angles. Polar angles are measured from the luminaire's axis (0..pi), azimuths around it (0..2
 /// pi) [rad].

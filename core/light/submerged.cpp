@@ -140,6 +140,12 @@ void SubmergedSurfaces::filter_textures(const SurfaceSpread& spread, SurfaceHit&
     if (!hit.is_water_surface) textures_->filter_textures(spread, hit);
 }
 
+void SubmergedSurfaces::add_to_texture(const SurfaceHit& hit,
+                                       std::span<const double> by_reflectance,
+                                       TextureGradient& gradient) const {
+    if (!hit.is_water_surface) textures_->add_to_texture(hit, by_reflectance, gradient);
+}
+
 SubmergedField::SubmergedField(std::shared_ptr<const ConcentrationField> below,
                                const WaterSurface& surface, bool with_image)
     : below_(std::move(below)), surface_(surface), with_image_(with_image) {

@@ -47,6 +47,8 @@ class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
     bool empty() const override { return false; }
     bool has_textures() const override { return textures_ != nullptr; }
     void filter_textures(const SurfaceSpread& spread, SurfaceHit& hit) const override;
+    void add_to_texture(const SurfaceHit& hit, std::span<const double> by_reflectance,
+                        TextureGradient& gradient) const override;
 
   private:
     // Replaces what was found of the surfaces below on the way, if the water's surface is nearer.

@@ -35,7 +35,7 @@ class ScoreSum final : public PathTerms {
         return scores_.turn(before, turn);
     }
     void add(const PathTerm& term) override {
-        scores_.find(term, score_);
+        scores_.find(term, {}, score_);
         for (std::size_t i = 0; i < sums_.size(); ++i)
             sums_[i] += term.radiance[i % bands_] * score_[i];
     }
@@ -114,11 +114,11 @@ std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedSc
 
 namespace {
 
-/// Hands the worth of each term of a pixel back to the field.
+/// Hands the worth of each term of a pixel to all that gather derivatives from it.
 class WorthOfTerms final : public PathTerms {
   public:
-    WorthOfTerms(const GradientTables& tables, FieldGradient& gradient, std::size_t bands)
-        : gradient_(tables, gradient), factors_(bands), worth_(bands) {}
+    WorthOfTerms(const PartGradients& gradients, std::size_t bands)
+        : gradients_(gradients), factors_(bands), worth_(bands) {}
 
     /// Of the many terms on a ray of this pixel, a few stand for all, without bias: drawn evenly
     /// along the sum of what they are worth.
@@ -132,11 +132,13 @@ class WorthOfTerms final : public PathTerms {
     }
     void finish() {
         take_kept();
-        gradient_.finish();
+        for (const auto& gradient : gradients_) gradient->finish();
     }
     int turn(int before, const PathTurn& turn) override {
         if (before == k_no_turn) take_kept();
-        return gradient_.turn(before, turn);
+        int number = k_no_turn;
+        for (const auto& gradient : gradients_) number = gradient->turn(before, turn);
+        return number;
     }
     void add(const PathTerm& term) override {
         double size = 0;
@@ -144,55 +146,82 @@ class WorthOfTerms final : public PathTerms {
             worth_[b] = factors_[b] * term.radiance[b];
             size += std::abs(worth_[b]);
         }
-        if (!random_) {
-            gradient_.add(term, worth_);
-            return;
-        }
-        kept_.push_back({term, size, worth_});
-        total_ += size;
+        if (random_)
+            keep(term, size);
+        else
+            hand_on(term);
     }
 
   private:
+    // Terms on a ray that stand for all; fewer are all taken.
+    static constexpr std::size_t k_of_ray = 8;
+
     struct Kept {
         PathTerm term;
         double size;
-        std::vector<double> worth;
+        std::size_t columns, concentration;  // how many
     };
 
+    void hand_on(const PathTerm& term) {
+        for (const auto& gradient : gradients_) gradient->add(term, worth_);
+    }
+
+    // What the term refers to of the ray is not there any more when it is taken.
+    void keep(const PathTerm& term, double size) {
+        kept_.push_back({term, size, term.columns.size(), term.concentration.size()});
+        kept_.back().term.radiance = {};
+        for (const std::span<const double> values :
+             {std::span<const double>(worth_), term.columns, term.concentration})
+            values_.insert(values_.end(), values.begin(), values.end());
+        total_ += size;
+    }
+
     void take_kept() {
-        constexpr double k_of_ray = 8;
-        const double step = total_ / k_of_ray;
-        double next = kept_.empty() ? 0 : random_->next() * step, before = 0;
+        const bool is_few = kept_.size() <= k_of_ray;
+        const double step = total_ / static_cast<double>(k_of_ray);
+        double next = is_few || kept_.empty() ? 0 : random_->next() * step, before = 0;
+        std::span<const double> values = values_;
+        const auto take = [&](std::size_t count) {
+            const std::span<const double> first = values.first(count);
+            values = values.subspan(count);
+            return first;
+        };
         for (Kept& kept : kept_) {
+            const std::span<const double> worth = take(worth_.size());
+            kept.term.columns = take(kept.columns);
+            kept.term.concentration = take(kept.concentration);
             before += kept.size;
             int times = 0;
-            for (; next < before; next += step) ++times;
-            if (times == 0) continue;
-            for (double& worth : kept.worth) worth *= times * step / kept.size;
-            gradient_.add(kept.term, kept.worth);
+            if (!is_few)
+                for (; next < before; next += step) ++times;
+            const double stands_for = is_few ? 1 : times * step / kept.size;
+            if (!(stands_for > 0)) continue;
+            for (std::size_t b = 0; b < worth_.size(); ++b) worth_[b] = worth[b] * stands_for;
+            hand_on(kept.term);
         }
         kept_.clear();
+        values_.clear();
         total_ = 0;
     }
 
-    PathGradient gradient_;
+    const PartGradients& gradients_;
     std::vector<double> factors_, worth_;
     std::optional<PathRandom> random_;  // none: all terms are taken
     std::vector<Kept> kept_;
+    std::vector<double> values_;  // of each kept term: its worth, columns and concentrations
     double total_ = 0;
 };
 
-/// Calls `render(x, y, terms)` for each pixel, row by row, in as many parts as there are gradients.
+/// Calls `render(x, y, terms)` for each pixel, row by row, in as many parts as there are.
 template <class Render>
-void gather(const LitScene& scene, const PixelWeights& weights, FieldGradients gradients,
+void gather(const PixelWeights& weights, std::span<const PartGradients> parts,
             const ShareCallback& progress, const Render& render) {
-    const GradientTables tables(scene);
     const PixelWindow& window = weights.window;
     std::atomic<int> done = 0;
-    parallel_for(gradients.size(), [&](std::size_t part) {
-        WorthOfTerms terms(tables, *gradients[part], weights.bands);
+    parallel_for(parts.size(), [&](std::size_t part) {
+        WorthOfTerms terms(parts[part], weights.bands);
         for (int y = window.y0 + static_cast<int>(part); y < window.y1;
-             y += static_cast<int>(gradients.size())) {
+             y += static_cast<int>(parts.size())) {
             for (int x = window.x0; x < window.x1; ++x) render(x, y, terms);
             progress(static_cast<double>(++done) / window.height());
         }
@@ -203,8 +232,8 @@ void gather(const LitScene& scene, const PixelWeights& weights, FieldGradients g
 
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
                          const PixelWeights& weights, const std::optional<Draws>& draws,
-                         FieldGradients gradients, const ShareCallback& progress) {
-    gather(pixels.scene(), weights, gradients, progress, [&](int x, int y, WorthOfTerms& terms) {
+                         std::span<const PartGradients> parts, const ShareCallback& progress) {
+    gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& terms) {
         thread_local PixelView view;
         thread_local SurfaceLight light;
         pixels.trace(x, y, view);
@@ -217,10 +246,10 @@ void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& wa
 }
 
 void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, const Draws& draws,
-                   FieldGradients gradients, const ShareCallback& progress) {
+                   std::span<const PartGradients> parts, const ShareCallback& progress) {
     PathPixels paths(pixels, 0);
     paths.share_out(draws.samples);
-    gather(pixels.scene(), weights, gradients, progress, [&](int x, int y, WorthOfTerms& terms) {
+    gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& terms) {
         thread_local PixelResult result;
         thread_local PixelView view;
         pixels.trace(x, y, view);

@@ -10,8 +10,8 @@
 #include "core/image/film.h"
 #include "core/light/volume_integrator.h"
 #include "core/passes/pixel_renderer.h"
-#include "core/paths/path_gradient.h"
 #include "core/paths/path_scores.h"
+#include "core/paths/term_gradient.h"
 
 namespace uw {
 
@@ -53,18 +53,18 @@ struct PixelWeights {
     }
 };
 
-/// Where the derivatives of that number by the values of the scene's field are gathered: one for
-/// each part of the image, that is rendered in one thread.
-using FieldGradients = std::span<const std::unique_ptr<FieldGradient>>;
+/// Where derivatives of that number are gathered: those of a part of the image, which is rendered
+/// in one thread. Not empty.
+using PartGradients = std::vector<std::unique_ptr<TermGradient>>;
 
-/// Gathers them, from all nodes of each ray, or, if there are `draws`, from a few that stand for
-/// all without bias: tracing what lies between a node and its lamp is what takes the time.
+/// Gathers them for all parts, from all nodes of each ray, or, if there are `draws`, from a few
+/// that stand for all without bias: following what each of them met is what takes the time.
 /// Otherwise as quadrature_derivatives.
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
                          const PixelWeights& weights, const std::optional<Draws>& draws,
-                         FieldGradients gradients, const ShareCallback& progress);
+                         std::span<const PartGradients> parts, const ShareCallback& progress);
 /// As path_derivatives.
 void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, const Draws& draws,
-                   FieldGradients gradients, const ShareCallback& progress);
+                   std::span<const PartGradients> parts, const ShareCallback& progress);
 
 }  // namespace uw

@@ -31,17 +31,17 @@ int PathGradient::turn(int before, const PathTurn& turn) {
     return static_cast<int>(count_++);
 }
 
-void PathGradient::add(const PathTerm& term, std::span<const double> weights) {
+void PathGradient::add(const PathTerm& term, std::span<const double> worth) {
     Corner& from = corners_[static_cast<std::size_t>(term.turn)];
     const Vector3 in = direction_between(from.position, term.place, from.in);
-    for (std::size_t b = 0; b < bands_; ++b) from.worth[b] += weights[b];
-    add_way(from, term.place, in, weights);
+    for (std::size_t b = 0; b < bands_; ++b) from.worth[b] += worth[b];
+    add_way(from, term.place, in, worth);
     if (term.emitter == k_no_emitter) return;
     const Point3 origin = (*tables_.scene.emitters)[term.emitter].origin(term.place);
-    find_column_weights(weights);
+    find_column_weights(worth);
     gradient_.add_column(origin, term.place, weights_);
     if (term.hit == nullptr)
-        add_scattering(term.place, in, direction_between(term.place, origin, in), weights);
+        add_scattering(term.place, in, direction_between(term.place, origin, in), worth);
 }
 
 void PathGradient::finish() {

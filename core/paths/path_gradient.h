@@ -6,7 +6,7 @@
 
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
-#include "core/paths/path_segment.h"
+#include "core/paths/term_gradient.h"
 
 namespace uw {
 
@@ -24,7 +24,7 @@ struct GradientTables {
 /// The derivative of a number by the values of a field, from that by the light of paths: the
 /// transpose of PathScores. What terms are worth is handed back along their ways, once for all that
 /// share a stretch of it, and to each place where the field scatters them. For one thread.
-class PathGradient {
+class PathGradient final : public TermGradient {
   public:
     /// What is referred to must outlive it.
     PathGradient(const GradientTables& tables, FieldGradient& gradient)
@@ -33,13 +33,9 @@ class PathGradient {
           bands_(static_cast<std::size_t>(tables.scene.medium->band_count())),
           constituents_(tables.scene.medium->constituents.size()) {}
 
-    /// PathTerms::turn. One from the camera begins anew, after finish().
-    int turn(int before, const PathTurn& turn);
-    /// The number changes by weights[band] in proportion to the term's light: its derivative by
-    /// that, times it.
-    void add(const PathTerm& term, std::span<const double> weights);
-    /// Hands back what all terms since the last camera turn are worth.
-    void finish();
+    int turn(int before, const PathTurn& turn) override;
+    void add(const PathTerm& term, std::span<const double> worth) override;
+    void finish() override;
 
   private:
     struct Corner {

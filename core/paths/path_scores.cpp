@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/geometry/surface_reflection.h"
@@ -22,7 +23,10 @@ bool has_same_origin(const Lamp& a, const Lamp& b) {
 }  // namespace
 
 ChangedScenes::Side::Side(const LitScene& of)
-    : scene(of), attenuation(*of.medium), phases(*of.medium) {}
+    : scene(of),
+      attenuation(*of.medium),
+      phases(*of.medium),
+      textures(of.surfaces != nullptr ? textures_of(*of.surfaces) : nullptr) {}
 
 ChangedScenes::ChangedScenes(const LitScene& scene, std::span<const SceneChange> changes)
     : bands_(static_cast<std::size_t>(scene.medium->band_count())),
@@ -34,9 +38,7 @@ ChangedScenes::ChangedScenes(const LitScene& scene, std::span<const SceneChange>
             throw UsageError("what the water is made of, or its bands, changes with the number");
         if (side.emitters->size() != scene.emitters->size())
             throw UsageError("the number of lamps, or of the points that they consist of, changes");
-        sides_.emplace_back(side);
-        sides_.back().has_same_field = side.field == scene.field;
-        sides_.back().has_same_surfaces = side.surfaces == scene.surfaces;
+        compare(sides_.emplace_back(side));
     };
     for (const SceneChange& change : changes) {
         add(change.less);
@@ -47,12 +49,45 @@ ChangedScenes::ChangedScenes(const LitScene& scene, std::span<const SceneChange>
         if ((*scene.emitters)[j].index() == first_emitters_.size()) first_emitters_.push_back(j);
 }
 
+void ChangedScenes::compare(Side& side) const {
+    const LitScene& scene = base().scene;
+    const auto has_same_scattering = [](const OpticalCoefficients& a,
+                                        const OpticalCoefficients& b) {
+        return a.scattering == b.scattering;
+    };
+    const Medium& medium = *side.scene.medium;
+    side.has_same_medium =
+        side.attenuation == base().attenuation && side.phases == base().phases &&
+        has_same_scattering(medium.uniform, scene.medium->uniform) &&
+        std::ranges::equal(medium.constituents, scene.medium->constituents, has_same_scattering,
+                           &Constituent::per_unit, &Constituent::per_unit);
+    side.has_same_field = side.scene.field == scene.field;
+    side.has_same_surfaces = side.scene.surfaces == scene.surfaces;
+    for (std::size_t j = 0; j < scene.emitters->size(); ++j)
+        side.has_same_emitter.push_back((*side.scene.emitters)[j] == (*scene.emitters)[j] ? 1 : 0);
+}
+
+bool ChangedScenes::keeps_way(std::size_t change) const {
+    const auto keeps = [](const Side& side) { return side.has_same_medium && side.has_same_field; };
+    return keeps(less(change)) && keeps(more(change));
+}
+
+bool ChangedScenes::keeps_response(std::size_t change) const {
+    return keeps_way(change) && less(change).has_same_surfaces && more(change).has_same_surfaces;
+}
+
+bool ChangedScenes::keeps_emitter(std::size_t change, std::size_t emitter) const {
+    return less(change).has_same_emitter[emitter] != 0 &&
+           more(change).has_same_emitter[emitter] != 0;
+}
+
 PathScores::Corner& PathScores::add_corner() {
     if (count_ == corners_.size()) corners_.emplace_back();
     return corners_[count_++];
 }
 
 int PathScores::turn(int before, const PathTurn& turn) {
+    which_ = {};
     const auto number = static_cast<int>(count_);
     add_corner();
     Corner& corner = corners_[static_cast<std::size_t>(number)];
@@ -67,7 +102,8 @@ int PathScores::turn(int before, const PathTurn& turn) {
     return number;
 }
 
-void PathScores::find(const PathTerm& term, std::span<double> scores) {
+void PathScores::find(const PathTerm& term, const EveryFew& which, std::span<double> scores) {
+    which_ = which;
     const Corner& from = corners_[static_cast<std::size_t>(term.turn)];
     const bool is_event = term.hit != nullptr || term.emitter != k_no_emitter;
     PathTurn::Kind kind = PathTurn::Kind::camera;
@@ -107,8 +143,11 @@ void PathScores::place(Corner& corner, PathTurn::Kind kind, const Point3& positi
             const double length = distance(before->position, position);
             if (sides[i].scene.surfaces->closest_hit({before->position, corner.in},
                                                      (1 + k_same_place) * length, other) &&
-                other.distance > (1 - k_same_place) * length)
+                other.distance > (1 - k_same_place) * length) {
+                if (sides[i].textures != nullptr)
+                    sides[i].textures->filter_textures(hit->spread, other);
                 found = other;
+            }
         }
     }
     if (kind == PathTurn::Kind::scattered && scenes_.constituents_ > 0) {
@@ -163,8 +202,10 @@ void PathScores::find_column(const Side& side, const Point3& from, const Point3&
 void PathScores::add_way(const Point3& from, const Point3& to, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     const double length = distance(from, to);
-    find_column(scenes_.base(), from, to, base_column_);
-    for (std::size_t i = 0; i < scenes_.changes(); ++i) {
+    bool has_column = false;
+    for (std::size_t i = which_.first; i < scenes_.changes(); i += which_.step) {
+        if (scenes_.keeps_way(i)) continue;
+        if (!std::exchange(has_column, true)) find_column(scenes_.base(), from, to, base_column_);
         const auto depths = [&](const Side& side, double sign) {
             if (!side.has_same_field) find_column(side, from, to, column_);
             const std::vector<double>& columns = side.has_same_field ? base_column_ : column_;
@@ -178,12 +219,14 @@ void PathScores::add_way(const Point3& from, const Point3& to, std::span<double>
     }
 }
 
-template <class Find>
-void PathScores::add_relative(const Find& find, std::span<double> scores) {
+template <class Keeps, class Find>
+void PathScores::add_relative(const Keeps& keeps, const Find& find, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     Spectrum value, less, more;
-    find(scenes_.base(), value);
-    for (std::size_t i = 0; i < scenes_.changes(); ++i) {
+    bool has_value = false;
+    for (std::size_t i = which_.first; i < scenes_.changes(); i += which_.step) {
+        if (keeps(i)) continue;
+        if (!std::exchange(has_value, true)) find(scenes_.base(), value);
         find(scenes_.less(i), less);
         find(scenes_.more(i), more);
         for (std::size_t b = 0; b < bands; ++b)
@@ -195,7 +238,8 @@ void PathScores::add_relative(const Find& find, std::span<double> scores) {
 void PathScores::add_response(const Corner& corner, const Vector3& out, std::span<double> scores) {
     if (corner.kind != PathTurn::Kind::scattered && corner.kind != PathTurn::Kind::reflected)
         return;
-    add_relative([&](const Side& side, Spectrum& values) { respond(side, corner, out, values); },
+    add_relative([&](std::size_t change) { return scenes_.keeps_response(change); },
+                 [&](const Side& side, Spectrum& values) { respond(side, corner, out, values); },
                  scores);
 }
 
@@ -246,8 +290,10 @@ double PathScores::shine(const Side& side, const Corner& corner, std::size_t emi
 void PathScores::add_lamp(const PathTerm& term, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     Spectrum value, less, more;
-    shine(scenes_.base(), last_, term.emitter, value);
-    for (std::size_t i = 0; i < scenes_.changes(); ++i) {
+    bool has_value = false;
+    for (std::size_t i = which_.first; i < scenes_.changes(); i += which_.step) {
+        if (scenes_.keeps_response(i) && scenes_.keeps_emitter(i, term.emitter)) continue;
+        if (!std::exchange(has_value, true)) shine(scenes_.base(), last_, term.emitter, value);
         const double radius_less = shine(scenes_.less(i), last_, term.emitter, less);
         const double radius_more = shine(scenes_.more(i), last_, term.emitter, more);
         for (std::size_t b = 0; b < bands; ++b)
@@ -310,18 +356,19 @@ Spectrum PathScores::emission(const Side& side, const Corner& corner) const {
 }
 
 void PathScores::add_emission(const Corner& corner, std::span<double> scores) {
-    add_relative([&](const Side& side, Spectrum& values) { values = emission(side, corner); },
+    add_relative([&](std::size_t change) { return scenes_.keeps_response(change); },
+                 [&](const Side& side, Spectrum& values) { values = emission(side, corner); },
                  scores);
 }
 
 // What a lamp looks like changes with its power alone.
 void PathScores::add_seen_lamp(std::size_t lamp, std::span<double> scores) {
     const std::size_t emitter = scenes_.first_emitters_[lamp];
-    add_relative(
-        [&](const Side& side, Spectrum& values) {
-            values = (*side.scene.emitters)[emitter].axis_intensity();
-        },
-        scores);
+    add_relative([&](std::size_t change) { return scenes_.keeps_emitter(change, emitter); },
+                 [&](const Side& side, Spectrum& values) {
+                     values = (*side.scene.emitters)[emitter].axis_intensity();
+                 },
+                 scores);
 }
 
 }  // namespace uw

@@ -6,6 +6,7 @@
 
 #include "core/base/spectrum.h"
 #include "core/geometry/surfaces.h"
+#include "core/geometry/textured_surfaces.h"
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
 #include "core/paths/path_segment.h"
@@ -40,8 +41,18 @@ class ChangedScenes {
         AttenuationTable attenuation;
         PhaseTable phases;
         // Whether these are the unchanged scene's.
-        bool has_same_field = true, has_same_surfaces = true;
+        bool has_same_medium = true, has_same_field = true, has_same_surfaces = true;
+        std::vector<char> has_same_emitter;          // for each
+        const TexturedSurfaces* textures = nullptr;  // of the surfaces, if they have some
     };
+
+    /// Finds in what `side` is as the unchanged scene.
+    void compare(Side& side) const;
+    // Whether both sides of a change are the unchanged scene in what light meets on its way, and
+    // scatters or reflects it; and in an emitter as well.
+    bool keeps_way(std::size_t change) const;
+    bool keeps_response(std::size_t change) const;
+    bool keeps_emitter(std::size_t change, std::size_t emitter) const;
 
     const Side& base() const { return sides_.front(); }
     const Side& less(std::size_t change) const { return sides_[1 + 2 * change]; }
@@ -71,8 +82,12 @@ class PathScores {
     void begin() { count_ = 0; }
     /// PathTerms::turn.
     int turn(int before, const PathTurn& turn);
-    /// The scores of a term, [change * bands + band], in 1 / the number's unit.
-    void find(const PathTerm& term, std::span<double> scores);
+    /// Changes `first`, `first + step`, ...: all of them, unless said otherwise.
+    struct EveryFew {
+        std::size_t first = 0, step = 1;
+    };
+    /// The scores of a term by these changes, [change * bands + band], in 1 / the number's unit.
+    void find(const PathTerm& term, const EveryFew& which, std::span<double> scores);
 
   private:
     using Side = ChangedScenes::Side;
@@ -110,12 +125,14 @@ class PathScores {
     void find_column(const Side& side, const Point3& from, const Point3& to,
                      std::vector<double>& column) const;
     // Adds (more - less) / (step times the value) of what `find` finds for a side.
-    template <class Find>
-    void add_relative(const Find& find, std::span<double> scores);
+    // Changes that keep it are passed over.
+    template <class Keeps, class Find>
+    void add_relative(const Keeps& keeps, const Find& find, std::span<double> scores);
 
     const ChangedScenes& scenes_;
     std::vector<Corner> corners_;
     std::size_t count_ = 0;  // of those in use
+    EveryFew which_;         // that are looked for
     Corner last_;
     std::vector<double> column_, base_column_, less_, more_, p_;
 };

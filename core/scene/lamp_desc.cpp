@@ -98,6 +98,29 @@ LampProfileDesc read_cosine(ConfigMap& map, const SceneContext& /*context*/) {
     return CosineProfileDesc{map.require("fwhm", k_mend).between(0, 180, k_mend)};
 }
 
+LampProfileDesc read_table_profile(ConfigMap& map, const SceneContext& /*context*/) {
+    constexpr auto k_mend =
+        "write {type: table, angles: [0, 20, 40, 60], values: [1, 0.9, 0.4, 0]}";
+    constexpr std::size_t k_most = 1024;
+    TableProfileDesc profile;
+    const ConfigValue angles = map.require("angles", k_mend),
+                      values = map.require("values", k_mend);
+    for (const ConfigValue& entry : angles.list(k_mend)) {
+        const double angle = entry.within(0, 180, "give angles from the lamp's axis in degrees");
+        if (profile.angles.empty() ? angle != 0 : angle <= profile.angles.back())
+            entry.fail(fmt::format("must ascend from 0, found {}; {}", angle, k_mend));
+        profile.angles.push_back(angle);
+    }
+    if (profile.angles.size() < 2 || profile.angles.size() > k_most)
+        angles.fail(fmt::format("needs 2 to {} angles; {}", k_most, k_mend));
+    for (const ConfigValue& entry : values.list_of(profile.angles.size(), k_mend))
+        profile.values.push_back(entry.within(
+            0, 1, "give the intensity relative to the lamp's; divide by the greatest"));
+    if (std::ranges::max(profile.values) == 0)
+        values.fail("are all 0, so that the lamp is dark; give 1 where it is brightest");
+    return profile;
+}
+
 LampProfileDesc read_ies_profile(ConfigMap& map, const SceneContext& context) {
     IesProfileDesc profile;
     profile.where = map.value().location();
@@ -117,11 +140,14 @@ LampProfileDesc read_profile(const ConfigValue& value, const SceneContext& conte
         std::to_array<std::pair<std::string_view, Read>>({{"isotropic", read_isotropic},
                                                           {"spot", read_spot},
                                                           {"cosine", read_cosine},
+                                                          {"table", read_table_profile},
                                                           {"ies", read_ies_profile}});
     static_assert(k_types.size() == std::variant_size_v<LampProfileDesc>);
     constexpr auto k_example = "write {type: spot, beam: 60, edge: 5}";
-    ConfigMap map(value, {"type", "beam", "edge", "falloff", "fwhm", "file", "rotate", "tilt"},
-                  k_example);
+    ConfigMap map(
+        value,
+        {"type", "beam", "edge", "falloff", "fwhm", "angles", "values", "file", "rotate", "tilt"},
+        k_example);
     const ConfigValue type = map.require("type", k_example);
     LampProfileDesc profile = type.choice(k_types)(map, context);
     map.finish("profile type '" + type.node().scalar + "'");

@@ -75,6 +75,14 @@ struct CosineProfileDesc {
     double fwhm = 0;  ///< full angle at half intensity [degrees], 0 < fwhm < 180
 };
 
+/// A table over the angle from the axis, all around it.
+struct TableProfileDesc {
+    static constexpr bool k_is_absolute = false;
+
+    std::vector<double> angles;  ///< [degrees], ascending from 0 to at most 180; two or more
+    std::vector<double> values;  ///< at these, 0..1, not all 0; linear in between, 0 beyond
+};
+
 /// The photometry of a luminaire, from an IES file (LM-63).
 struct IesProfileDesc {
     static constexpr bool k_is_absolute = true;  // in candelas
@@ -88,8 +96,8 @@ struct IesProfileDesc {
 /// How a lamp's radiant intensity depends on direction. core/light/lamp_profile.h constructs the
 /// profiles, core/scene/lamp_desc.h reads the descriptions; neither compiles unless it
 /// handles all of them.
-using LampProfileDesc =
-    std::variant<IsotropicProfileDesc, SpotProfileDesc, CosineProfileDesc, IesProfileDesc>;
+using LampProfileDesc = std::variant<IsotropicProfileDesc, SpotProfileDesc, CosineProfileDesc,
+                                     TableProfileDesc, IesProfileDesc>;
 
 /// What makes a lamp a sun: its light is parallel, or comes from a disc in the sky, and enters the
 /// water through its surface.

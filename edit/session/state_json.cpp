@@ -253,6 +253,11 @@ struct ProfileJson {
     Json operator()(const CosineProfileDesc& profile) const {
         return {{"type", "cosine"}, {"fwhm", profile.fwhm}};
     }
+    Json operator()(const TableProfileDesc& profile) const {
+        return {{"type", "table"},
+                {"angles", list_json(profile.angles)},
+                {"values", list_json(profile.values)}};
+    }
     Json operator()(const IesProfileDesc& profile) const {
         return {{"type", "ies"},
                 {"file", profile.file.lexically_relative(folder).generic_string()},

@@ -107,6 +107,14 @@ Point3 axis_point(const PlacedLamp& lamp) {
 std::optional<double> beam_half_angle(const LampProfileDesc& profile) {
     if (const auto* spot = std::get_if<SpotProfileDesc>(&profile)) return 0.5 * spot->beam;
     if (const auto* cosine = std::get_if<CosineProfileDesc>(&profile)) return 0.5 * cosine->fwhm;
+    if (const auto* table = std::get_if<TableProfileDesc>(&profile)) {
+        const double half = 0.5 * std::ranges::max(table->values);
+        std::size_t i = table->values.size() - 1;
+        while (table->values[i] < half) --i;  // the last of those, if the beam is hollow
+        if (i + 1 == table->values.size()) return table->angles[i];
+        const double share = (table->values[i] - half) / (table->values[i] - table->values[i + 1]);
+        return table->angles[i] + share * (table->angles[i + 1] - table->angles[i]);
+    }
     return std::nullopt;
 }
 

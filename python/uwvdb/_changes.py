@@ -86,24 +86,33 @@ def changes_of(scene: Scene, path: str) -> tuple[tuple[int, ...], list[Change]]:
     return shape, result
 
 
-def volume_of_array(path: str) -> int | None:
-    """Which volume `path` names the array of; None: it is another path."""
-    found = re.fullmatch(r"volumes\[(\d+)\]\.array", path)
-    return int(found[1]) if found else None
+def is_of_sensor(path: str) -> bool:
+    """Whether `path` is a number of the sensor, which light does not depend on."""
+    return path.startswith("camera.sensor.")
 
 
-def checked_gradient(gradient: Any, scene: Scene,
-                     settings: Mapping[str, Any]) -> NDArray[np.float64]:
-    """The derivative of some number by an image's light, of the image's shape. Raises
-    UsageError."""
+def array_of(path: str) -> tuple[str, int] | None:
+    """Which entry `path` names the array of, ("volumes", 0) or ("geometry", 0), by that section's
+    arrays: voxels or texels. None: it is another path."""
+    found = (re.fullmatch(r"(volumes)\[(\d+)\]\.array", path)
+             or re.fullmatch(r"(geometry)\[(\d+)\]\.texture", path))
+    return (found[1], int(found[2])) if found else None
+
+
+def light_shape(scene: Scene, settings: Mapping[str, Any]) -> tuple[int, ...]:
+    """The shape of an image's "total"."""
     camera = scene.camera_at(settings.get("camera"))
     width, height = settings.get("size") or (camera.width, camera.height)
     if settings.get("crop"):
         x0, y0, x1, y1 = settings["crop"]
         width, height = x1 - x0, y1 - y0
-    shape = (height, width, len(scene.bands))
+    return height, width, len(scene.bands)
+
+
+def checked_gradient(gradient: Any, shape: tuple[int, ...], layer: str) -> NDArray[np.float64]:
+    """The derivative of some number by an image's layer of that shape. Raises UsageError."""
     found = np.asarray(_arrays.numbers("backward: gradient", gradient, np.float64))
     if found.shape != shape:
-        raise UsageError(f"backward: gradient: expected the shape of the image's total, "
+        raise UsageError(f"backward: gradient: expected the shape of the image's {layer}, "
                          f"{_arrays.shape_text(shape)}, found {_arrays.shape_text(found.shape)}")
     return np.ascontiguousarray(found)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _uwvdb
+from ._sensor import Sensor
 from .errors import UsageError
 
 __all__ = ["Image"]
@@ -116,6 +117,14 @@ class Image(Mapping[str, "NDArray[np.float32]"]):
         Light scattered once; exact: the same sums as the image's, differentiated term by term.
         """
         return self._image.derivative(name)
+
+    def mean_numbers(self) -> NDArray[np.float64]:
+        """The sensor's numbers in the mean, (height, width), or (height, width, 3) with mosaic
+        "three": what noise scatters the layer "sensor" about. They are limited by full wells, but
+        neither rounded nor limited to what the converter holds. From "total", which the image must
+        have."""
+        _, scene, settings = self._rendered_by("mean_numbers")
+        return Sensor(scene._native, self._origin.settings, self["total"]).numbers
 
     def jvp(self, directions: Mapping[str, ArrayLike], **settings: Any) -> NDArray[np.float32]:
         """The derivative of "total" as numbers of its scene move: Renderer.jvp() of the scene as it

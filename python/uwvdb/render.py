@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _changes, _uwvdb
+from ._sensor import Sensor
 from .errors import SceneWarning, UsageError
 from .image import Image
 from .scene import Scene
@@ -144,8 +145,9 @@ class Renderer:
         return LightMatrix([name.removeprefix("lamp.") for name in names], images,
                            image["total"] - images.sum(axis=0, dtype=np.float32))
 
-    def jvp(self, scene: Scene, directions: Mapping[str, ArrayLike], *, seed: int = 0,
-            progress: Progress | None = None, **settings: Any) -> NDArray[np.float32]:
+    def jvp(self, scene: Scene, directions: Mapping[str, ArrayLike], *, layer: str = "total",
+            seed: int = 0, progress: Progress | None = None,
+            **settings: Any) -> NDArray[np.float32]:
         """The derivative of "total" (height, width, bands) as the numbers at some paths of the
         scene move along `directions` (a Jacobian times a vector): {"lamps[0].position": [1, 0, 0]}
         for a lamp that moves along x [radiance per m]. One number stands for all of a list.
@@ -154,48 +156,83 @@ class Renderer:
         what surfaces reflect. `settings`: as for render(). Where the image is of light scattered
         once, it is exact: the image's own sums, differentiated term by term. With
         render.scattering multiple, and by integrator "path", it is the mean over `samples` random
-        paths per pixel, without bias and with noise: other ones for another `seed`. Not in it is what a number moves in the image:
-        the edges of shadows, and of beams that end at once.
+        paths per pixel, without bias and with noise: other ones for another `seed`. Not in it is
+        what a number moves in the image: the edges of shadows, and of beams that end at once.
+
+        layer "sensor": of Image.mean_numbers() in place of "total", by the sensor's own numbers as
+        well ("camera.sensor.gain").
 
         Raises UsageError for what has no such derivatives, and as render().
         """
         options = _settings("jvp", scene, {**settings, "seed": seed})
-        images = self._renderer.derivatives(scene._native, [_changes.change(scene, directions)],
-                                            options, progress)
-        return images[0]
+        of_light = {path: along for path, along in directions.items()
+                    if not (layer == "sensor" and _changes.is_of_sensor(path))}
+        light: NDArray[np.float32] | None = None
+        if of_light or layer != "sensor":
+            light = self._renderer.derivatives(
+                scene._native, [_changes.change(scene, of_light)], options, progress)[0]
+        if layer == "total" and light is not None:
+            return light
+        sensor = self._sensor(scene, layer, settings)
+        moved = np.zeros(sensor.shape)
+        if light is not None:
+            moved += sensor.of_light(light)
+        of_sensor = {path: directions[path] for path in directions if path not in of_light}
+        if of_sensor:
+            moved += sensor.by_number(_changes.change(scene, of_sensor))
+        return moved.astype(np.float32)
 
     def backward(self, scene: Scene, gradient: ArrayLike, of: str | Sequence[str], *,
-                 seed: int = 0, progress: Progress | None = None,
+                 layer: str = "total", seed: int = 0, progress: Progress | None = None,
                  **settings: Any) -> dict[str, NDArray[np.float64]]:
         """The derivatives of a number by those at the paths `of` (a vector times a Jacobian), each
         of the shape that the scene has there; `gradient` (height, width, bands) is the number's
         derivative by "total": 2 (total - seen) where it is the sum of squares of what an image is
-        off. "volumes[0].array" stands for all values of an array that was added to the volumes.
+        off. "volumes[0].array" stands for all values of an array that was added to the volumes,
+        "geometry[0].texture" for all of a texture that was added with a mesh.
 
-        Like jvp() otherwise. Numbers take a pass over the image together, and each array one. Unless
-        the quality is "exact", a few places on each ray stand for all in those of arrays: descend
-        with another `seed` in each step."""
+        Like jvp() otherwise, and so is `layer`. All take one pass over the image together. Unless
+        the quality is "exact", a few places on each ray stand for all, without bias: descend with
+        another `seed` in each step."""
         options = _settings("backward", scene, {**settings, "seed": seed})
         paths = [of] if isinstance(of, str) else list(of)
-        weights = _changes.checked_gradient(gradient, scene, settings)
-        result: dict[str, NDArray[np.float64]] = {}
+        sensor = self._sensor(scene, layer, settings) if layer != "total" else None
+        weights = _changes.checked_gradient(
+            gradient, sensor.shape if sensor else _changes.light_shape(scene, settings), layer)
         changes: list[_changes.Change] = []
         shapes: dict[str, tuple[int, ...]] = {}
-        for path in paths:
-            volume = _changes.volume_of_array(path)
-            if volume is not None:
-                result[path] = self._renderer.voxel_derivatives(
-                    scene._native, volume, weights, options, progress).astype(np.float64)
-                continue
-            shapes[path], more = _changes.changes_of(scene, path)
-            changes += more
-        if changes:
-            images = self._renderer.derivatives(scene._native, changes, options, progress)
-            numbers = np.einsum("kyxb,yxb->k", images, weights)
-            ends = np.cumsum([np.prod(shape, dtype=int) for shape in shapes.values()])
-            for (path, shape), of_path in zip(shapes.items(), np.split(numbers, ends[:-1])):
-                result[path] = of_path.reshape(shape)
+        arrays: dict[str, dict[str, int]] = {"volumes": {}, "geometry": {}}
+        result: dict[str, NDArray[np.float64]] = {}
+        for path in dict.fromkeys(paths):
+            array = _changes.array_of(path)
+            if array is not None:
+                arrays[array[0]][path] = array[1]
+            elif sensor is not None and _changes.is_of_sensor(path):
+                shape, of_sensor = _changes.changes_of(scene, path)
+                result[path] = np.array([(weights * sensor.by_number(change)).sum()
+                                         for change in of_sensor]).reshape(shape)
+            else:
+                shapes[path], more = _changes.changes_of(scene, path)
+                changes += more
+        if len(result) == len(set(paths)):
+            return result
+        numbers, *of_arrays = self._renderer.gradient(
+            scene._native, changes, *(list(entries.values()) for entries in arrays.values()),
+            weights if sensor is None else sensor.to_light(weights), options, progress)
+        result.update((path, values.astype(np.float64))
+                      for entries, found in zip(arrays.values(), of_arrays)
+                      for path, values in zip(entries, found))
+        ends = np.cumsum([np.prod(shape, dtype=int) for shape in shapes.values()])
+        for (path, shape), of_path in zip(shapes.items(), np.split(np.array(numbers), ends[:-1])):
+            result[path] = of_path.reshape(shape)
         return {path: result[path] for path in paths}
+
+    def _sensor(self, scene: Scene, layer: str, settings: Mapping[str, Any]) -> Sensor:
+        if layer != "sensor":
+            raise UsageError(f"layer: expected \"total\" or \"sensor\", found {layer!r}")
+        options = _settings("sensor", scene, settings)
+        total = self.render(scene, ["total"], **settings)["total"]
+        return Sensor(scene._native, options, total)
 
     def clear(self) -> None:
         """Frees what is kept for the next image, and reads files anew."""

@@ -149,7 +149,8 @@ class Geometry(Section):
     _name, _kind = "geometry", "mesh"
 
     def add(self, vertices: ArrayLike, faces: ArrayLike, *,
-            reflectance: ArrayLike | None = None, name: str | None = None,
+            reflectance: ArrayLike | None = None, uvs: ArrayLike | None = None,
+            texture: ArrayLike | None = None, name: str | None = None,
             transform: Mapping[str, Any] | None = None,
             trajectory: Mapping[str, Any] | None = None) -> str:
         """Adds a mesh of diffuse triangles, opaque from both sides. Returns its name.
@@ -157,6 +158,10 @@ class Geometry(Section):
         vertices     (V, 3) positions [m, world]
         faces        (F, 3) whole numbers: the vertices of each triangle, counted from 0
         reflectance  0 to 1, one per band or one for all; 0.5 if left out
+        texture      instead of it: (height, width, 3) reflectances, linear red, green and blue,
+                     which become bands as those of files do
+        uvs          (V, 2) where in the texture each vertex lies: (0, 0) is its top left corner,
+                     (1, 1) the bottom right one, as in glTF
         transform, trajectory  as scene files have them
 
         Raises UsageError for arrays of another shape or with masked values, and InputError.
@@ -170,11 +175,40 @@ class Geometry(Section):
                                  f"({what[0].upper()}, 3), found {_arrays.shape_text(found.shape)}")
         if corners.dtype.kind not in "iu":
             raise UsageError(f"{where}: faces: expected whole numbers, found {corners.dtype}")
+        if (uvs is None) != (texture is None):
+            raise UsageError(f"{where}: give uvs and a texture, or neither")
+        if texture is not None and reflectance is not None:
+            raise UsageError(f"{where}: give either a reflectance or a texture")
+        coordinates = texels = None
+        if uvs is not None and texture is not None:
+            coordinates = _arrays.numbers(f"{where}: uvs", uvs, np.float64)
+            if coordinates.shape != (len(points), 2) or not np.isfinite(coordinates).all():
+                raise UsageError(f"{where}: uvs: expected finite numbers of shape "
+                                 f"({len(points)}, 2), found {_arrays.shape_text(coordinates.shape)}")
+            texels = _texture(f"{where}: texture", texture)
         name = self._new_name(name)
         entry: dict[str, Any] = {"mesh": name}
         for key, value in (("reflectance", reflectance), ("transform", transform),
                            ("trajectory", trajectory)):
             if value is not None:
                 entry[key] = copy.copy(value)
-        self._scene.add_mesh(name, points, corners.astype(np.int64, copy=False), entry, where)
+        self._scene.add_mesh(name, points, corners.astype(np.int64, copy=False), coordinates, texels,
+                             entry, where)
         return name
+
+    def set_texture(self, name: str, texture: ArrayLike) -> None:
+        """Puts another texture in the place of that of the mesh that was added as `name`, of any
+        size. Raises UsageError."""
+        where = "geometry.set_texture"
+        self._scene.set_texture(name, _texture(where, texture), where)
+
+
+def _texture(where: str, texture: ArrayLike) -> NDArray[np.float32]:
+    texels = np.asarray(_arrays.numbers(where, texture, np.float32))
+    if texels.ndim != 3 or texels.shape[2] != 3 or 0 in texels.shape:
+        raise UsageError(f"{where}: expected an array of shape (height, width, 3), found "
+                         f"{_arrays.shape_text(texels.shape)}")
+    if not ((texels >= 0) & (texels <= 1)).all():
+        raise UsageError(f"{where}: expected reflectances from 0 to 1, linear; pixels of an 8-bit "
+                         "image are (pixels / 255) ** 2.2, roughly")
+    return texels

@@ -22,10 +22,12 @@ class _Render(torch.autograd.Function):
                 settings: dict[str, Any], *values: torch.Tensor) -> torch.Tensor:
         changed = with_values(scene, dict(zip(paths, values)))
         ctx.rendered = renderer, changed, paths, dict(settings)
-        settings = {key: value for key, value in settings.items() if key != "seed"}
+        layer = settings.get("layer", "total")
+        settings = {key: value for key, value in settings.items() if key not in ("seed", "layer")}
         ctx.kinds = [(value.dtype, value.device) for value in values]
-        image = renderer.render(changed, ["total"], **settings)["total"]
-        return torch.as_tensor(np.array(image), dtype=values[0].dtype, device=values[0].device)
+        image = renderer.render(changed, ["total"], **settings)
+        found = image.mean_numbers() if layer == "sensor" else image["total"]
+        return torch.as_tensor(np.array(found), dtype=values[0].dtype, device=values[0].device)
 
     @staticmethod
     def backward(ctx: Any, *gradients: torch.Tensor) -> tuple[torch.Tensor | None, ...]:
@@ -39,15 +41,18 @@ class _Render(torch.autograd.Function):
 
 def with_values(scene: Scene, values: Mapping[str, torch.Tensor]) -> Scene:
     """The scene with these values, by their paths; "volumes[0].array" stands for an array that was
-    added to the volumes."""
+    added to the volumes, "geometry[0].texture" for the texture of a mesh."""
     changed = scene.copy()
     written: dict[str, Any] = {}
     for path, value in values.items():
         numbers = value.detach().cpu().numpy()
-        if _changes.volume_of_array(path) is None:
+        array = _changes.array_of(path)
+        if array is None:
             written[path] = numbers.tolist()
-        else:
+        elif array[0] == "volumes":
             changed.volumes.set_values(changed[path], numbers)
+        else:
+            changed.geometry.set_texture(changed[f"geometry[{array[1]}].mesh"], numbers)
     if written:
         changed.update(written)
     return changed
@@ -62,7 +67,8 @@ def render(renderer: Renderer, scene: Scene, values: Mapping[str, torch.Tensor],
         image = uwvdb.torch.render(renderer, scene, {"water.scattering.b": b})
         ((image - seen) ** 2).mean().backward()
 
-    `settings`: as for Renderer.render(), and the `seed` of its gradient. By light paths, both share
+    `settings`: as for Renderer.render(), and the `seed` of its gradient; layer="sensor" for
+    Image.mean_numbers() in place of "total". By light paths, both share
     their random numbers with seed 0: take others for an unbiased gradient of a square. Raises
     UsageError, and as Renderer.render().
     """

@@ -1,6 +1,7 @@
 #include "render/measures/target_probe.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
@@ -84,6 +85,9 @@ std::string profile_key(const LampProfileDesc& profile) {
                                    static_cast<int>(desc.falloff));
             else if constexpr (std::is_same_v<Desc, CosineProfileDesc>)
                 return fmt::format("cosine {}", desc.fwhm);
+            else if constexpr (std::is_same_v<Desc, TableProfileDesc>)
+                return fmt::format("table {} {}", fmt::join(desc.angles, " "),
+                                   fmt::join(desc.values, " "));
             else if constexpr (std::is_same_v<Desc, IesProfileDesc>)
                 return fmt::format("ies {} {} {}", desc.rotate, desc.tilt, desc.file.string());
             else

@@ -34,7 +34,7 @@ constexpr double k_square = 0.03;
 
 /// White around it, squares about the middle; 16 rays a pixel.
 void draw_board(const Camera& camera, const Affine& camera_from_board,
-                const std::filesystem::path& file) {
+                const std::filesystem::path& file, int rows = k_rows) {
     const Affine board_from_camera = camera_from_board.inverse();
     Preview picture(camera.width(), camera.height());
     for (int y = 0; y < camera.height(); ++y)
@@ -48,9 +48,9 @@ void draw_board(const Camera& camera, const Affine& camera_from_board,
                 const Vector3 along = board_from_camera.apply_to_vector(ray->direction);
                 const double s = -from.z / along.z;
                 const double column = (from.x + s * along.x) / k_square + 0.5 * (k_columns + 1);
-                const double row = (from.y + s * along.y) / k_square + 0.5 * (k_rows + 1);
+                const double row = (from.y + s * along.y) / k_square + 0.5 * (rows + 1);
                 const bool is_board =
-                    column >= 0 && column < k_columns + 1 && row >= 0 && row < k_rows + 1;
+                    column >= 0 && column < k_columns + 1 && row >= 0 && row < rows + 1;
                 const bool is_dark =
                     is_board && (static_cast<int>(column) + static_cast<int>(row)) % 2 == 0;
                 white += is_dark ? 0.1 : 0.9;
@@ -99,6 +99,29 @@ TEST_F(FitBoards, AreFoundAndThePortFromThem) {
     const ProgramResult again =
         run({"fit", "rig.yaml", "--points", "corners.csv", "--unknown", "camera.port.distance"});
     EXPECT_EQ(again.exit_code, 0) << again.err;
+}
+
+// Held upside down, too: a board of 7 x 5 corners looks the same turned by half, but one of 7 x 4
+// has a black square at one end alone.
+TEST_F(FitBoards, BeginAtTheirBlackCorner) {
+    const Camera camera(read_scene_text(k_boarded_rig, "rig.yaml").camera);
+    const TempDir folder;
+    constexpr int k_fewer_rows = 4;
+    for (const double turn : {0.1, 0.1 + 3.14159265358979}) {
+        const Affine camera_from_board(rotation_by({0.2, 0.1, turn}).matrix(), {0.01, 0.02, 0.45});
+        draw_board(camera, camera_from_board, folder / "board.png", k_fewer_rows);
+        const PointTable found = find_board_corners(
+            {folder / "board.png"}, {k_columns, k_fewer_rows, k_square}, [](const std::string&) {});
+        ASSERT_EQ(found.points.size(), std::size_t{k_columns} * k_fewer_rows);
+        for (const PhotographedPoint& point : found.points) {
+            // The picture's squares are about the middle.
+            const Vector3 from_middle =
+                from_origin(point.point) -
+                0.5 * k_square * Vector3(k_columns - 1, k_fewer_rows - 1, 0);
+            const auto seen = camera.project(camera_from_board * at_origin_plus(from_middle));
+            EXPECT_LT(std::hypot(seen->x - point.seen.x, seen->y - point.seen.y), 0.3) << turn;
+        }
+    }
 }
 
 TEST_F(FitBoards, OfOtherFormsAreRefused) {

@@ -280,6 +280,102 @@ def test_backward_to_voxels(scene):
     assert 0 < np.linalg.norm(drawn - exact) < 0.3 * np.linalg.norm(exact)
 
 
+def test_at_final_backward_is_right_in_the_mean(scene):
+    """A few nodes of each ray stand for all."""
+    scene = with_volumes(plain(scene))
+    scene["camera.resolution"] = [48, 32]
+    names = ["lamps.left.position", "lamps.left.intensity", "lamps.right.intensity",
+             "lamps.right.position", "water.absorption", "geometry[0].reflectance"]
+    weights = np.ones((32, 48, 3))
+    exact = RENDERER.backward(scene, weights, names, quality="exact")
+    drawn = [RENDERER.backward(scene, weights, names, quality="final", seed=seed)
+             for seed in range(6)]
+    for name in names:
+        values = np.array([found[name] for found in drawn])
+        size = np.abs(exact[name]).max()
+        # 1e-3: what the interpolated image is off at final.
+        error = values.std(axis=0, ddof=1) / np.sqrt(len(drawn)) + 1e-3 * size
+        assert (np.abs(values.mean(axis=0) - exact[name]) < 4 * error).all(), name
+        # Least sure is what few pixels tell, which see the wall through gaps of the plume.
+        assert values.std(axis=0).max() < 0.08 * size, name
+
+
+SHEET = [[-0.6, -0.5, 1.4], [0.7, -0.4, 1.8], [0.6, 0.5, 1.7], [-0.7, 0.4, 1.3]]
+
+
+def textured(scene, texture):
+    """A sheet ahead, tilted, with a texture."""
+    scene.geometry.add(SHEET, [[0, 1, 2], [0, 2, 3]], uvs=[[0, 0], [1, 0], [1, 1], [0, 1]],
+                       texture=texture, name="sheet")
+    return f"geometry[{len(scene.geometry) - 1}].texture"
+
+
+# Fine texels are averaged in the image, by way of halved textures; coarse ones interpolated.
+@pytest.mark.parametrize("width, height", [(5, 4), (61, 47)])
+def test_backward_to_texels(scene, width, height):
+    scene = plain(scene)
+    scene["camera.resolution"] = [8, 6]
+    rng = np.random.default_rng(3)
+    texels = rng.uniform(0.2, 0.8, (height, width, 3))
+    path = textured(scene, texels)
+    image = RENDERER.render(scene)
+    weights = rng.normal(size=image["total"].shape)
+    gradient = image.backward(weights, path)[path]
+    assert gradient.shape == texels.shape
+    direction = rng.normal(size=texels.shape)
+
+    def render(h):
+        changed = scene.copy()
+        changed.geometry.set_texture("sheet", texels + h * direction)
+        return (RENDERER.render(changed)["total"] * weights).sum()
+    # Images are float32. Light of surfaces is exact at final, too.
+    assert (gradient * direction).sum() == pytest.approx(
+        central(render, 0.02),
+        abs=1e-4 * np.linalg.norm(gradient) * np.linalg.norm(direction))
+
+
+def test_of_all_light_by_texels(scene):
+    """All of an even texture together are the reflectance in its place, by the same paths."""
+    scene = plain(scene)
+    scene["camera.resolution"] = [8, 6]
+    scene["render"] = {"integrator": "path", "samples": 16}
+    even = scene.copy()
+    reflectance = np.array([0.3, 0.6, 0.5])
+    even.geometry.add(SHEET, [[0, 1, 2], [0, 2, 3]], reflectance=reflectance.tolist())
+    path = textured(scene, np.broadcast_to(reflectance, (4, 5, 3)))
+    weights = np.random.default_rng(3).normal(size=(6, 8, 3))
+    by_texel = RENDERER.backward(scene, weights, path)[path]
+    expected = RENDERER.backward(even, weights, "geometry[1].reflectance")
+    assert by_texel.shape == (4, 5, 3)
+    assert np.allclose(by_texel.sum(axis=(0, 1)), expected["geometry[1].reflectance"], rtol=1e-4,
+                       atol=1e-5 * np.abs(by_texel).sum())
+
+
+def test_textures_are_kept_and_checked(scene):
+    texels = np.full((2, 3, 3), 0.25)
+    texels[0, 0] = [0.5, 0.75, 1]
+    textured(scene, texels)
+    settings = dict(size=(24, 18))
+    image = RENDERER.render(scene, ["clean"], **settings)["clean"]
+    again = RENDERER.render(pickle.loads(pickle.dumps(scene)), ["clean"], **settings)["clean"]
+    assert (image == again).all()
+    other = scene.copy()
+    other.geometry.set_texture("sheet", np.full((1, 1, 3), 0.25))
+    assert (RENDERER.render(other, ["clean"], **settings)["clean"] < image).any()
+    with pytest.raises(uwvdb.UsageError, match="expected reflectances from 0 to 1"):
+        scene.geometry.set_texture("sheet", np.full((2, 2, 3), 128))
+    with pytest.raises(uwvdb.UsageError, match=r"expected an array of shape \(height, width, 3\)"):
+        scene.geometry.set_texture("sheet", np.full((2, 2), 0.5))
+    with pytest.raises(uwvdb.UsageError, match="no mesh 'rock' with a texture"):
+        scene.geometry.set_texture("rock", texels)
+    with pytest.raises(uwvdb.UsageError, match="give uvs and a texture, or neither"):
+        scene.geometry.add(np.eye(3), [[0, 1, 2]], texture=texels)
+    with pytest.raises(uwvdb.UsageError, match=r"finite numbers of shape \(3, 2\)"):
+        scene.geometry.add(np.eye(3), [[0, 1, 2]], uvs=np.zeros((2, 2)), texture=texels)
+    with pytest.raises(uwvdb.UsageError, match="geometry\\[0\\].texture: only of textures in memory"):
+        RENDERER.backward(scene, np.ones((8, 12, 3)), "geometry[0].texture")
+
+
 @pytest.mark.parametrize("path, direction, step", [
     ("water.absorption", [1, 1, 1], 0.02), ("water.scattering.b", [1, 1, 1], 0.04),
     ("water.scattering.phase.g", 1, 0.02), ("geometry[0].reflectance", 1, 0.1)])

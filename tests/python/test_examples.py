@@ -69,3 +69,14 @@ def test_fit_plume(tmp_path):
     # From a haze, 90 % off, and with the 1 % of noise in the pictures.
     assert pictures < 10 and density < 60
     assert figure.stat().st_size > 10000
+
+
+def test_restore_texture(tmp_path):
+    figure = tmp_path / "floor.png"
+    said = run_example("restore_texture.py", "--size", "32x24", "--texels", 24, "--steps", 5,
+                       "--figure", figure, folder=tmp_path)
+    pictures, texels = map(float, re.search(r"by +(\S+) %, texels in view by +(\S+) %",
+                                            said).groups())
+    # From an even grey, 50 % off, and with the 1 % of noise in the pictures.
+    assert pictures < 3 and texels < 12
+    assert figure.stat().st_size > 10000

@@ -37,6 +37,22 @@ def test_gradients_are_those_of_backward(scene):
     assert values["water.absorption"].grad is None
 
 
+def test_differentiates_a_sensors_numbers(scene):
+    scene = foggy(scene)
+    scene.update({"camera.lens": {"f_number": 2.8, "focal_length": 0.006}, "camera.sensor": {
+        "exposure": 2e-4, "gain": 0.5, "pixel_pitch": 20e-6, "quantum_efficiency": 0.5}})
+    values = {"camera.sensor.gain": torch.tensor(0.5, dtype=torch.float64, requires_grad=True),
+              "lamps.left.intensity": torch.full((3,), 50.0, dtype=torch.float64,
+                                                 requires_grad=True)}
+    numbers = uwvdb.torch.render(RENDERER, scene, values, quality="exact", layer="sensor")
+    assert numbers.shape == (6, 8)
+    numbers.sum().backward()
+    # In proportion to the gain; and to both lamps.
+    proportional = torch.isclose(values["camera.sensor.gain"].grad, numbers.detach().sum() / 0.5)
+    assert proportional
+    assert 0 < (values["lamps.left.intensity"].grad * 50).sum() < numbers.detach().sum()
+
+
 def test_descends_to_the_water_of_a_picture(scene):
     scene = foggy(scene)
     seen = torch.as_tensor(np.array(RENDERER.render(scene, quality="exact")["total"]))

@@ -42,12 +42,17 @@ inline constexpr const char* k_raw_sensor =
 
 class FitPictures : public CliTest {
   protected:
-    void take_pictures(const std::string& sensor) {
+    void take_pictures(const std::string& sensor, const std::vector<std::string>& values = {}) {
         std::string text = k_dive;
         text.replace(text.find("SENSOR"), 6, sensor);
         write("dive.yaml", text);
-        const ProgramResult result =
-            run({"render", "dive.yaml", "-o", "dive_%02d.exr", "--frames", "0-2", "--quiet"});
+        std::vector<std::string> arguments{"render",   "dive.yaml", "-o",     "dive_%02d.exr",
+                                           "--frames", "0-2",       "--quiet"};
+        for (const std::string& value : values) {
+            arguments.push_back("--set");
+            arguments.push_back(value);
+        }
+        const ProgramResult result = run(arguments);
         ASSERT_EQ(result.exit_code, 0) << result.err;
     }
     Json fit(const std::string& images, const std::string& unknown,

@@ -13,6 +13,10 @@ const PROFILES = {
     isotropic: { label: "isotropic", keys: [], start: () => ({}) },
     spot: { label: "spot", keys: ["beam", "edge"], start: () => ({ beam: 60, edge: 5 }) },
     cosine: { label: "cosine", keys: ["fwhm"], start: () => ({ fwhm: 120 }) },
+    table: {
+        label: "table", keys: [],
+        start: () => ({ angles: [0, 20, 40, 60], values: [1, 0.9, 0.4, 0] }),
+    },
     ies: {
         label: "IES file", keys: ["rotate", "tilt"],
         start: (scene) => ({ file: scene.ies_files[0] }),

@@ -78,6 +78,37 @@ TEST(TextureFilter, OfTheWholeIsItsMeanInLinearLight) {
     }
 }
 
+TEST(TextureFilter, HasAGradientThatIsItsTranspose) {
+    // Of odd sides, too, and of spreads that reach over edges and take coarse halves.
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const auto& [width, height] : {std::pair{16, 8}, {13, 7}, {1, 5}, {1, 1}}) {
+        PixelImage image{width, height, 3, {}, true};
+        for (int i = 0; i < 3 * width * height; ++i)
+            image.pixels.push_back(static_cast<float>(uniform(random)));
+        const Texture texture(image);
+        TextureGradient gradient(texture);
+        double sum = 0;
+        for (int i = 0; i < 60; ++i) {
+            const double u = 2 * uniform(random) - 0.5, v = 2 * uniform(random) - 0.5;
+            const double size = i % 3 == 0 ? 0 : 0.6 * uniform(random);
+            const TextureSpread spread{{size * uniform(random), size * uniform(random)},
+                                       {-size * uniform(random), size * uniform(random)}};
+            const TextureLookup lookup = i % 2 == 0 ? k_clamped : TextureLookup{};
+            const Rgb weights{uniform(random), -uniform(random), 2 * uniform(random)};
+            gradient.add(u, v, lookup, spread, weights);
+            const Rgb found = texture.sample(u, v, lookup, spread);
+            for (std::size_t c = 0; c < 3; ++c) sum += weights[c] * found[c];
+        }
+        double by_texel = 0;
+        const std::vector<double> values = gradient.by_texel();
+        ASSERT_EQ(values.size(), image.pixels.size());
+        for (std::size_t i = 0; i < values.size(); ++i)
+            by_texel += values[i] * static_cast<double>(image.pixels[i]);
+        EXPECT_NEAR(by_texel, sum, 1e-5) << width << " x " << height;  // halves are floats
+    }
+}
+
 TEST(TextureFilter, KeepsWhatIsSharpBesideALongSide) {
     // Stripes along u: a parallelogram as long as 60 texels along them and less than one across
     // sees the stripe that a point sees.

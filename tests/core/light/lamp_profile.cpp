@@ -27,6 +27,7 @@ TEST(LampProfile, IsThatOfItsDescription) {
     EXPECT_TRUE(makes<IsotropicProfile>(IsotropicProfileDesc{}));
     EXPECT_TRUE(makes<SpotProfile>(SpotProfileDesc{60, 5}));
     EXPECT_TRUE(makes<CosineProfile>(CosineProfileDesc{60}));
+    EXPECT_TRUE(makes<TableProfile>(TableProfileDesc{{0, 60}, {1, 0}}));
     EXPECT_TRUE(makes<IesProfile>(IesProfileDesc{folder.write("lamp.ies", writer.text())}));
 }
 
@@ -38,6 +39,7 @@ TEST(LampProfile, OnlyAbsoluteOnesHaveCandelas) {
     for (const LampProfileDesc& desc :
          {LampProfileDesc(IsotropicProfileDesc{}), LampProfileDesc(SpotProfileDesc{60, 5}),
           LampProfileDesc(CosineProfileDesc{60}),
+          LampProfileDesc(TableProfileDesc{{0, 60}, {1, 0}}),
           LampProfileDesc(IesProfileDesc{folder.write("lamp.ies", writer.text())})}) {
         std::vector<std::string> warnings;
         const LampProfile profile = make_lamp_profile(desc, {}, warnings);

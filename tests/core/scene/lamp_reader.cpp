@@ -56,6 +56,18 @@ TEST_F(LampReader, ReadsEachProfile) {
     EXPECT_EQ(profile<SpotProfileDesc>("{type: spot, beam: 60}").falloff,
               SpotProfileDesc::Falloff::smooth);
     EXPECT_EQ(profile<CosineProfileDesc>("{type: cosine, fwhm: 70}").fwhm, 70);
+    const auto table =
+        profile<TableProfileDesc>("{type: table, angles: [0, 20, 60], values: [1, 0.5, 0]}");
+    EXPECT_EQ(table.angles, (std::vector<double>{0, 20, 60}));
+    EXPECT_EQ(table.values, (std::vector<double>{1, 0.5, 0}));
+    for (const char* const wrong :
+         {"angles: [0], values: [1]", "angles: [5, 20], values: [1, 0]",
+          "angles: [0, 20, 20], values: [1, 0.5, 0]", "angles: [0, 181], values: [1, 0]",
+          "angles: [0, 20], values: [1]", "angles: [0, 20], values: [2, 1]",
+          "angles: [0, 20], values: [0, 0]", "angles: [0, 20]"})
+        EXPECT_THROW(profile<TableProfileDesc>(std::string("{type: table, ") + wrong + "}"),
+                     InputError)
+            << wrong;
     const std::filesystem::path file = folder_.write("lamp.ies", "x");
     const auto ies = profile<IesProfileDesc>("{type: ies, file: lamp.ies, rotate: 30, tilt: -20}");
     EXPECT_EQ(ies.file, file);
@@ -151,7 +163,7 @@ TEST_F(LampReader, NamesAllProfiles) {
     } catch (const InputError& error) {
         const std::string message = error.what();
         EXPECT_NE(message.find("lamps[0].profile.type: unknown value 'laser'; use one of: "
-                               "isotropic, spot, cosine, ies"),
+                               "isotropic, spot, cosine, table, ies"),
                   std::string::npos)
             << message;
     }
