@@ -204,7 +204,7 @@ class Geometry(Section):
 
 
 def _texture(where: str, texture: ArrayLike) -> NDArray[np.float32]:
-    texels = np.asarray(_arrays.numbers(where, texture, np.float32))
+    texels = np.asarray(_arrays.numbers(where, texture, np.float32), dtype=np.float32)
     if texels.ndim != 3 or texels.shape[2] != 3 or 0 in texels.shape:
         raise UsageError(f"{where}: expected an array of shape (height, width, 3), found "
                          f"{_arrays.shape_text(texels.shape)}")
