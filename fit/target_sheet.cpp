@@ -192,9 +192,9 @@ TargetMesh target_mesh(const BoardDesc& board, const Paper& paper, const std::st
     constexpr double k_same = 1e-6;
     for (std::vector<double>* edges : {&xs, &ys}) {
         std::ranges::sort(*edges);
-        const auto beyond =
-            std::ranges::unique(*edges, [](double a, double b) { return b - a < k_same; });
-        edges->erase(beyond.begin(), beyond.end());
+        const auto beyond = std::unique(edges->begin(), edges->end(),
+                                        [](double a, double b) { return b - a < k_same; });
+        edges->erase(beyond, edges->end());
     }
     const auto grey_at = [&](double x, double y) {
         for (const Patch& patch : patches)

@@ -531,6 +531,7 @@ class RendererObject : public RunClient {
     static std::vector<ChangedScene> changed_of(const std::vector<Change>& changes,
                                                 const Wanted& wanted) {
         std::vector<ChangedScene> changed;
+        changed.reserve(changes.size());
         for (const auto& [name, less, more, step] : changes)
             changed.push_back({name, image_of(*less, wanted), image_of(*more, wanted), step});
         return changed;

@@ -233,9 +233,9 @@ void write_target(const FitArguments& a) {
     if (a.target.extension() == ".obj") {
         std::filesystem::path materials = a.target;
         materials.replace_extension(".mtl");
-        TargetMesh mesh = target_mesh(board, paper, materials.filename().string());
-        files.add(a.target, std::move(mesh.obj));
-        files.add(materials, std::move(mesh.mtl));
+        const TargetMesh mesh = target_mesh(board, paper, materials.filename().string());
+        files.add(a.target, mesh.obj);
+        files.add(materials, mesh.mtl);
     } else {
         files.add(a.target, target_pdf(board, paper));
     }

@@ -240,6 +240,7 @@ Texture::Level Texture::halved(const Level& level) {
 }
 
 TextureGradient::TextureGradient(const Texture& texture) : texture_(&texture) {
+    levels_.reserve(texture.levels_.size());
     for (const Texture::Level& level : texture.levels_) levels_.emplace_back(level.rgb.size());
 }
 

@@ -216,12 +216,12 @@ class Renderer:
                 changes += more
         if len(result) == len(set(paths)):
             return result
-        numbers, *of_arrays = self._renderer.gradient(
-            scene._native, changes, *(list(entries.values()) for entries in arrays.values()),
+        volumes, textures = arrays["volumes"], arrays["geometry"]
+        numbers, by_voxel, by_texel = self._renderer.gradient(
+            scene._native, changes, list(volumes.values()), list(textures.values()),
             weights if sensor is None else sensor.to_light(weights), options, progress)
-        result.update((path, values.astype(np.float64))
-                      for entries, found in zip(arrays.values(), of_arrays)
-                      for path, values in zip(entries, found))
+        for path, values in zip([*volumes, *textures], by_voxel + by_texel):
+            result[path] = values.astype(np.float64)
         ends = np.cumsum([np.prod(shape, dtype=int) for shape in shapes.values()])
         for (path, shape), of_path in zip(shapes.items(), np.split(np.array(numbers), ends[:-1])):
             result[path] = of_path.reshape(shape)

@@ -14,6 +14,8 @@ from .errors import UsageError
 
 __all__ = ["Geometry", "Volumes"]
 
+_FARTHEST_UV = 1e7  # as in files
+
 
 class Section:
     """A list of the scene's, with entries from files and from memory."""
@@ -182,9 +184,12 @@ class Geometry(Section):
         coordinates = texels = None
         if uvs is not None and texture is not None:
             coordinates = _arrays.numbers(f"{where}: uvs", uvs, np.float64)
-            if coordinates.shape != (len(points), 2) or not np.isfinite(coordinates).all():
-                raise UsageError(f"{where}: uvs: expected finite numbers of shape "
-                                 f"({len(points)}, 2), found {_arrays.shape_text(coordinates.shape)}")
+            if coordinates.shape != (len(points), 2):
+                raise UsageError(f"{where}: uvs: expected an array of shape ({len(points)}, 2), "
+                                 f"found {_arrays.shape_text(coordinates.shape)}")
+            if not (np.abs(coordinates) <= _FARTHEST_UV).all():
+                raise UsageError(f"{where}: uvs: expected numbers of at most {_FARTHEST_UV:g}; "
+                                 "0 to 1 lies in the texture")
             texels = _texture(f"{where}: texture", texture)
         name = self._new_name(name)
         entry: dict[str, Any] = {"mesh": name}
@@ -204,7 +209,7 @@ class Geometry(Section):
 
 
 def _texture(where: str, texture: ArrayLike) -> NDArray[np.float32]:
-    texels = np.asarray(_arrays.numbers(where, texture, np.float32))
+    texels = np.asarray(_arrays.numbers(where, texture, np.float32), dtype=np.float32)
     if texels.ndim != 3 or texels.shape[2] != 3 or 0 in texels.shape:
         raise UsageError(f"{where}: expected an array of shape (height, width, 3), found "
                          f"{_arrays.shape_text(texels.shape)}")

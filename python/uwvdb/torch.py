@@ -18,8 +18,8 @@ __all__ = ["render"]
 
 class _Render(torch.autograd.Function):
     @staticmethod
-    def forward(ctx: Any, renderer: Renderer, scene: Scene, paths: list[str],
-                settings: dict[str, Any], *values: torch.Tensor) -> torch.Tensor:
+    def forward(ctx: Any, *given: Any, **_: Any) -> torch.Tensor:
+        renderer, scene, paths, settings, *values = given
         changed = with_values(scene, dict(zip(paths, values)))
         ctx.rendered = renderer, changed, paths, dict(settings)
         layer = settings.get("layer", "total")

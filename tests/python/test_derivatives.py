@@ -370,7 +370,9 @@ def test_textures_are_kept_and_checked(scene):
         scene.geometry.set_texture("rock", texels)
     with pytest.raises(uwvdb.UsageError, match="give uvs and a texture, or neither"):
         scene.geometry.add(np.eye(3), [[0, 1, 2]], texture=texels)
-    with pytest.raises(uwvdb.UsageError, match=r"finite numbers of shape \(3, 2\)"):
+    with pytest.raises(uwvdb.UsageError, match="uvs: expected numbers of at most 1e"):
+        scene.geometry.add(np.eye(3), [[0, 1, 2]], uvs=np.full((3, 2), np.nan), texture=texels)
+    with pytest.raises(uwvdb.UsageError, match=r"uvs: expected an array of shape \(3, 2\)"):
         scene.geometry.add(np.eye(3), [[0, 1, 2]], uvs=np.zeros((2, 2)), texture=texels)
     with pytest.raises(uwvdb.UsageError, match="geometry\\[0\\].texture: only of textures in memory"):
         RENDERER.backward(scene, np.ones((8, 12, 3)), "geometry[0].texture")
