@@ -49,12 +49,11 @@ TEST_F(Validate, SaysInRedWhatIsNotWithinTheTolerance) {
     EXPECT_EQ(line.substr(line.size() - 4), "\033[0m");
 }
 
-TEST_F(Validate, PassesWithForwardScatterOfBothShapes) {
+// With a Gaussian it passes where the page is written, below.
+TEST_F(Validate, PassesWithExponentialForwardScatter) {
     arguments_.quiet = false;
-    for (const char* shape : {"gaussian", "exponential"}) {
-        scatter_forward(shape);
-        EXPECT_TRUE(run_validate(arguments_, false, out_)) << out_.str();
-    }
+    scatter_forward("exponential");
+    EXPECT_TRUE(run_validate(arguments_, false, out_)) << out_.str();
     EXPECT_NE(out_.str().find("volume - direct sum"), std::string::npos);
     EXPECT_NE(out_.str().find("blurred backscatter"), std::string::npos);
 }

@@ -1,4 +1,4 @@
-// ctest labels: metamorphic
+// ctest labels: metamorphic slow
 // Random scenes with a lamp in a plume, or behind it, that the camera looks at: where errors of
 // what is known of the way from the lamp do not average out along a ray.
 #include <gtest/gtest.h>
