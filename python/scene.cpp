@@ -240,7 +240,7 @@ using Corners = py::array_t<std::int64_t, py::array::c_style | py::array::forcec
 /// Linear red, green and blue in rows.
 using TextureArray = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-PixelImage image_of(const TextureArray& rgb) {
+PixelImage pixels_of(const TextureArray& rgb) {
     return {static_cast<int>(rgb.shape(1)),
             static_cast<int>(rgb.shape(0)),
             3,
@@ -257,7 +257,7 @@ void add_mesh(SceneObject& scene, const std::string& name, const DoubleRows& ver
     mesh->positions.assign(vertices.data(), vertices.data() + vertices.size());
     if (uvs && texture) {
         mesh->uvs[0].assign(uvs->data(), uvs->data() + uvs->size());
-        mesh->materials = {textured_material(image_of(*texture))};
+        mesh->materials = {textured_material(pixels_of(*texture))};
     }
     // An index beyond the vertices, or negative, becomes one that no vertex has: it is counted as
     // missing.
@@ -288,7 +288,7 @@ void set_texture(SceneObject& scene, const std::string& name, const TextureArray
         throw UsageError(
             fmt::format("{}: the scene has no mesh '{}' with a texture", where, printable(name)));
     auto mesh = std::make_shared<TriangleMesh>(*found->second);
-    mesh->materials = {textured_material(image_of(texture))};
+    mesh->materials = {textured_material(pixels_of(texture))};
     scene.set_mesh(name, std::move(mesh));
 }
 

@@ -236,8 +236,12 @@ void write_target(const FitArguments& a) {
         const TargetMesh mesh = target_mesh(board, paper, materials.filename().string());
         files.add(a.target, mesh.obj);
         files.add(materials, mesh.mtl);
-    } else {
+    } else if (a.target.extension() == ".pdf") {
         files.add(a.target, target_pdf(board, paper));
+    } else {
+        throw UsageError(fmt::format(
+            "--target {}: name a sheet to print SHEET.pdf, or its surface for scenes SHEET.obj",
+            printable(a.target.string())));
     }
     files.commit(a.quiet);
 }

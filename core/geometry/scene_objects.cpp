@@ -384,10 +384,7 @@ void add_to_texture_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& band
     const MeshObject& object = mesh.object;
     if (!object.has_textures || object.reflectance) return;
     const MeshPlace place(object.mesh, hit.triangle, hit.u, hit.v, mesh.transform(), hit.spread);
-    Rgb by_color = bands.by_rgb(by_reflectance);
-    if (object.is_pbr)
-        for (double& value : by_color) value *= 1 - place.roughness_metallic()[1];
-    place.add_base_color(by_color, gradient);
+    place.add_base_color(bands.by_rgb(by_reflectance), gradient);
 }
 
 SurfaceMaterial material_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands,

@@ -172,7 +172,7 @@ class Lamp {
     void append_profile_breaks(const Ray& ray, const Interval& stretch,
                                std::vector<double>& s) const;
 
-    /// Of the same name, place, light and so on.
+    /// Whether all that is known of them is the same.
     friend bool operator==(const Lamp&, const Lamp&) = default;
 
   private:

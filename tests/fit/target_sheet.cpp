@@ -135,6 +135,9 @@ TEST_F(FitTarget, SaysWhatDoesNotFit) {
               "another --paper, or --board 9x6x0.023\n");
     EXPECT_EQ(error({"fit", "--target", "sheet.pdf", "--paper", "a5"}),
               "uwvdb: --paper a5: did you mean 'a4'?\n");
+    EXPECT_EQ(error({"fit", "--target", "sheet.OBJ"}),
+              "uwvdb: --target sheet.OBJ: name a sheet to print SHEET.pdf, or its surface for "
+              "scenes SHEET.obj\n");
     EXPECT_EQ(error({"fit", "rig.yaml", "--target", "sheet.pdf"}),
               "uwvdb: --target: writes a sheet to print, and fits nothing; leave the scene out\n");
     EXPECT_EQ(error({"fit"}),

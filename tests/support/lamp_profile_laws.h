@@ -14,6 +14,13 @@
 /// The laws that every lamp profile obeys, so that each class is tested in one line.
 namespace uw::test {
 
+/// The relative intensity at this angle from the axis, of a profile whose axis is z.
+template <IsALampProfile P>
+double intensity_at(const P& profile, double degrees) {
+    const double angle = degrees * std::numbers::pi / 180;
+    return profile.relative_intensity({0, std::sin(angle), std::cos(angle)});
+}
+
 /// The relative intensity of `profile` integrated over the sphere by the midpoint rule, in the
 /// polar angle from the axis of its cone and the azimuth about it [sr].
 template <IsALampProfile P>

@@ -79,7 +79,7 @@ TEST(TextureFilter, OfTheWholeIsItsMeanInLinearLight) {
 }
 
 TEST(TextureFilter, HasAGradientThatIsItsTranspose) {
-    // Of odd sides, too, and of spreads that reach over edges and take coarse halves.
+    // Some sides are odd, and spreads reach over edges and take coarse halves.
     std::mt19937 random(3);
     std::uniform_real_distribution<double> uniform(0, 1);
     for (const auto& [width, height] : {std::pair{16, 8}, {13, 7}, {1, 5}, {1, 1}}) {

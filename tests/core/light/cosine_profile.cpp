@@ -13,11 +13,6 @@ namespace {
 
 using std::numbers::pi;
 
-double at(const CosineProfile& profile, double degrees) {
-    const double angle = degrees * pi / 180;
-    return profile.relative_intensity({0, std::sin(angle), std::cos(angle)});
-}
-
 TEST(CosineProfile, ObeysTheLaws) {
     const LampPlacement placement{Affine::rotation_xyz_degrees({20, -70, 110}), {0.6, 0, 0.8}};
     for (const double fwhm : {3.0, 60.0, 120.0, 175.0})
@@ -27,15 +22,16 @@ TEST(CosineProfile, ObeysTheLaws) {
 TEST(CosineProfile, IsHalfAtHalfItsWidth) {
     for (const double fwhm : {10.0, 70.0, 120.0, 170.0}) {
         const CosineProfile profile({fwhm}, {});
-        EXPECT_EQ(at(profile, 0), 1);
-        EXPECT_NEAR(at(profile, 0.5 * fwhm), 0.5, 1e-12) << fwhm;
-        EXPECT_NEAR(at(profile, -0.5 * fwhm), 0.5, 1e-12) << fwhm;
-        EXPECT_EQ(at(profile, 90.1), 0);
-        EXPECT_EQ(at(profile, 180), 0);
+        EXPECT_EQ(intensity_at(profile, 0), 1);
+        EXPECT_NEAR(intensity_at(profile, 0.5 * fwhm), 0.5, 1e-12) << fwhm;
+        EXPECT_NEAR(intensity_at(profile, -0.5 * fwhm), 0.5, 1e-12) << fwhm;
+        EXPECT_EQ(intensity_at(profile, 90.1), 0);
+        EXPECT_EQ(intensity_at(profile, 180), 0);
     }
     // 120 degrees: the exponent is 1, Lambert's law.
     for (const double degrees : {10.0, 45.0, 80.0})
-        EXPECT_NEAR(at(CosineProfile({120}, {}), degrees), std::cos(degrees * pi / 180), 1e-12);
+        EXPECT_NEAR(intensity_at(CosineProfile({120}, {}), degrees), std::cos(degrees * pi / 180),
+                    1e-12);
 }
 
 TEST(CosineProfile, SolidAngleIsTheIntegral) {

@@ -1,7 +1,6 @@
 // ctest labels: unit analytic
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "core/light/lamp_profile.h"
@@ -12,11 +11,6 @@ namespace {
 
 using std::numbers::pi;
 
-double at(const TableProfile& profile, double degrees) {
-    const double angle = degrees * pi / 180;
-    return profile.relative_intensity({0, std::sin(angle), std::cos(angle)});
-}
-
 TEST(TableProfile, ObeysTheLaws) {
     const LampPlacement placement{Affine::rotation_xyz_degrees({20, -70, 110}), {0.6, 0, 0.8}};
     expect_lamp_profile_laws(TableProfile({{0, 20, 40, 60}, {1, 0.9, 0.4, 0}}, placement));
@@ -26,13 +20,13 @@ TEST(TableProfile, ObeysTheLaws) {
 TEST(TableProfile, IsLinearBetweenItsAngles) {
     const TableProfile profile({{0, 20, 40, 60}, {0.5, 0.8, 0.4, 0.2}}, {});
     for (const double sign : {1.0, -1.0}) {
-        EXPECT_NEAR(at(profile, 0), 0.5, 1e-12);
-        EXPECT_NEAR(at(profile, sign * 10), 0.65, 1e-12);
-        EXPECT_NEAR(at(profile, sign * 20), 0.8, 1e-12);
-        EXPECT_NEAR(at(profile, sign * 35), 0.5, 1e-12);
-        EXPECT_NEAR(at(profile, sign * 59.999), 0.2, 1e-4);
-        EXPECT_EQ(at(profile, sign * 60.001), 0);
-        EXPECT_EQ(at(profile, sign * 180), 0);
+        EXPECT_NEAR(intensity_at(profile, 0), 0.5, 1e-12);
+        EXPECT_NEAR(intensity_at(profile, sign * 10), 0.65, 1e-12);
+        EXPECT_NEAR(intensity_at(profile, sign * 20), 0.8, 1e-12);
+        EXPECT_NEAR(intensity_at(profile, sign * 35), 0.5, 1e-12);
+        EXPECT_NEAR(intensity_at(profile, sign * 59.999), 0.2, 1e-4);
+        EXPECT_EQ(intensity_at(profile, sign * 60.001), 0);
+        EXPECT_EQ(intensity_at(profile, sign * 180), 0);
     }
 }
 
