@@ -69,8 +69,8 @@ std::filesystem::path observation_file(const ViewRecord& record, const SetFiles&
     return files.folder() / record.file("observations")->path;
 }
 
-std::vector<Track> tracks_of(const CompleteSequence& sequence,
-                             const std::vector<SurfacePoint>& points, const SetFiles& files) {
+std::vector<Track> tracks_of(const CompleteSequence& sequence, const std::vector<Landmark>& points,
+                             const SetFiles& files) {
     std::vector<Track> tracks(points.size());
     for (std::size_t i = 0; i < sequence.records.size(); ++i) {
         const ViewRecord& record = sequence.records[i];
@@ -125,7 +125,7 @@ void write_colmap_images(const CompleteSequence& sequence, const std::vector<Tra
     out.commit();
 }
 
-void write_colmap_points(const std::vector<SurfacePoint>& points, const std::vector<Track>& tracks,
+void write_colmap_points(const std::vector<Landmark>& points, const std::vector<Track>& tracks,
                          const std::filesystem::path& file) {
     std::size_t count = 0, observed = 0;
     for (const Track& track : tracks)
@@ -154,7 +154,7 @@ void write_colmap_points(const std::vector<SurfacePoint>& points, const std::vec
 }
 
 /// A PLY of the points and their colours. Readers take coordinates of single precision.
-std::string point_cloud_text(const std::vector<SurfacePoint>& points,
+std::string point_cloud_text(const std::vector<Landmark>& points,
                              const std::vector<Track>& tracks) {
     std::string vertices;
     for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -172,7 +172,7 @@ std::string point_cloud_text(const std::vector<SurfacePoint>& points,
 }
 
 void write_model(const CompleteSequence& sequence, SetFiles& files) {
-    const std::vector<SurfacePoint> points =
+    const std::vector<Landmark> points =
         read_points(files.folder() / points_file(sequence.definition, sequence.draw));
     const std::vector<Track> tracks = tracks_of(sequence, points, files);
     const std::string folder = sequence.folder + "sparse/0/";

@@ -25,19 +25,19 @@ std::string points_file(const DatasetDefinition& definition, std::size_t draw) {
     return definition.folder(draw) + "views/points.csv";
 }
 
-std::string points_csv(const std::vector<SurfacePoint>& points) {
+std::string points_csv(const std::vector<Landmark>& points) {
     std::string text = fmt::format("{}\n", k_point_columns);
-    for (const SurfacePoint& point : points)
+    for (const Landmark& point : points)
         text += fmt::format("{},{},{}\n", point.position.x, point.position.y, point.position.z);
     return text;
 }
 
-std::vector<SurfacePoint> read_points(const std::filesystem::path& file) {
+std::vector<Landmark> read_points(const std::filesystem::path& file) {
     std::ifstream in(file);
     if (!in) throw IoError(fmt::format("{}: cannot be read", file.string()));
     std::string columns;
     std::getline(in, columns);
-    std::vector<SurfacePoint> points;
+    std::vector<Landmark> points;
     Point3 p;
     char comma = 0;
     while (in >> p.x >> comma >> p.y >> comma >> p.z) points.push_back({p});
@@ -85,14 +85,14 @@ std::vector<ImageSight> sights_of(const Camera& camera, int side, const Surfaces
     return sights;
 }
 
-std::vector<SurfacePoint> point_seeds(const DatasetDefinition& definition, std::size_t draw,
-                                      const SceneDesc& scene, const Surfaces& surfaces) {
+std::vector<Landmark> point_seeds(const DatasetDefinition& definition, std::size_t draw,
+                                  const SceneDesc& scene, const Surfaces& surfaces) {
     constexpr std::size_t k_most_views = 64;
     const std::size_t all = definition.frames.size() * definition.cameras.size();
     const std::size_t views = std::min(all, k_most_views);
     const auto side = static_cast<int>(
         std::sqrt(static_cast<double>(k_most_points) / static_cast<double>(views)));
-    std::vector<SurfacePoint> points;
+    std::vector<Landmark> points;
     for (std::size_t i = 0; i < views; ++i) {
         const View view = definition.view(draw * all + i * all / views);
         const Camera camera(camera_of_view(definition, scene, view));

@@ -19,9 +19,9 @@ namespace uw {
 /// The file of a draw's surface points, relative to the set's folder.
 std::string points_file(const DatasetDefinition& definition, std::size_t draw);
 
-std::string points_csv(const std::vector<SurfacePoint>& points);
+std::string points_csv(const std::vector<Landmark>& points);
 /// Throws IoError, and InputError for anything but points_csv's.
-std::vector<SurfacePoint> read_points(const std::filesystem::path& file);
+std::vector<Landmark> read_points(const std::filesystem::path& file);
 
 /// How many surface points a draw has at most.
 inline constexpr std::size_t k_most_points = 4096;
@@ -43,8 +43,8 @@ CameraDesc camera_of_view(const DatasetDefinition& definition, const SceneDesc& 
 /// Points on the surfaces that never move, evenly over the images of up to 64 views of a draw, as
 /// they are seen past the surfaces of its first frame. `scene` is the draw's, as it was
 /// read, and `surfaces` are those of its first frame.
-std::vector<SurfacePoint> point_seeds(const DatasetDefinition& definition, std::size_t draw,
-                                      const SceneDesc& scene, const Surfaces& surfaces);
+std::vector<Landmark> point_seeds(const DatasetDefinition& definition, std::size_t draw,
+                                  const SceneDesc& scene, const Surfaces& surfaces);
 
 /// The image of a view in the scene of its draw.
 ImageChoice choice_of(const DatasetDefinition& definition, const SceneDesc& scene,

@@ -24,7 +24,7 @@
 namespace uw {
 
 /// A point of a surface that does not move, by which cameras of a set can be related.
-struct SurfacePoint {
+struct Landmark {
     Point3 position;  // world
 };
 
@@ -47,7 +47,7 @@ struct ViewImages {
     std::shared_ptr<const ColourView> display;  // what pictures are seen through; null: sRGB
     ImageMetadata metadata;
     std::shared_ptr<const Surfaces> surfaces;
-    std::shared_ptr<const std::vector<SurfacePoint>> points;  // null: no format needs them
+    std::shared_ptr<const std::vector<Landmark>> points;  // null: no format needs them
     InputSums inputs;
     std::vector<SetFile> shared;  // see ViewRecord
 

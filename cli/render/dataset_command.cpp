@@ -199,8 +199,7 @@ class ViewRenderer : public ViewClient {
             const std::string name = points_file(definition, draw);
             share("points", name,
                   points_csv(point_seeds(definition, draw, scene, surfaces_of(draw))));
-            points_ =
-                std::make_shared<const std::vector<SurfacePoint>>(read_points(folder_ / name));
+            points_ = std::make_shared<const std::vector<Landmark>>(read_points(folder_ / name));
         }
         const bool knows_ports =
             fittable_formats(definition).empty() && formats_in_air(definition).empty();
@@ -245,9 +244,9 @@ class ViewRenderer : public ViewClient {
     bool quiet_;
     JobScenes* scenes_ = nullptr;
     std::vector<std::chrono::steady_clock::time_point> ends_;
-    std::optional<std::size_t> draw_;                          // that of the last view
-    std::shared_ptr<const std::vector<SurfacePoint>> points_;  // of it; null: none are needed
-    std::vector<SetFile> shared_;                              // of it
+    std::optional<std::size_t> draw_;                      // that of the last view
+    std::shared_ptr<const std::vector<Landmark>> points_;  // of it; null: none are needed
+    std::vector<SetFile> shared_;                          // of it
     bool has_told_of_pinholes_ = false;
     InputSummer summer_;
     InputSums inputs_;  // of the image that is being rendered
