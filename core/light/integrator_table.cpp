@@ -31,20 +31,19 @@ constinit const IntegratorKind k_path_kind{.traces_paths = true,
 
 struct Entry {
     RenderDesc::Integrator integrator;
-    const IntegratorKind* kind;
+    const IntegratorKind& kind;
 };
 
 // The same size as the list of names: omitting an integrator is a compile-time error.
 constexpr std::array<Entry, k_integrator_names.size()> k_integrators{
-    {{RenderDesc::Integrator::volume, &VolumeIntegrator::k_kind},
-     {RenderDesc::Integrator::planes, &PlanesIntegrator::k_kind},
-     {RenderDesc::Integrator::reference, &ReferenceIntegrator::k_kind},
-     {RenderDesc::Integrator::path, &k_path_kind}}};
+    {{RenderDesc::Integrator::volume, VolumeIntegrator::k_kind},
+     {RenderDesc::Integrator::planes, PlanesIntegrator::k_kind},
+     {RenderDesc::Integrator::reference, ReferenceIntegrator::k_kind},
+     {RenderDesc::Integrator::path, k_path_kind}}};
 
 static_assert(std::ranges::all_of(k_integrator_names, [](const auto& named) {
-    return std::ranges::any_of(k_integrators, [&](const Entry& entry) {
-        return entry.integrator == named.second && entry.kind != nullptr;
-    });
+    return std::ranges::any_of(
+        k_integrators, [&](const Entry& entry) { return entry.integrator == named.second; });
 }));
 
 void check_scattering(const SceneDesc& scene) {
@@ -79,7 +78,7 @@ void check_scattering(const SceneDesc& scene) {
 }  // namespace
 
 const IntegratorKind& integrator_kind(RenderDesc::Integrator integrator) {
-    return *std::ranges::find(k_integrators, integrator, &Entry::integrator)->kind;
+    return std::ranges::find(k_integrators, integrator, &Entry::integrator)->kind;
 }
 
 RenderDesc::Scattering scattering_of(const RenderDesc& render) {
