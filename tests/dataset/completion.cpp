@@ -57,7 +57,8 @@ TEST_F(DatasetCompletion, TheManifestListsEveryViewAndFile) {
 
 TEST_F(DatasetCompletion, RecordsNameTheirFramesAsTheManifestDoes) {
     make("moving.yaml", "png", {"--frames", "2,5"});
-    for (const Json& view : Json::parse(read("set/manifest.json")).at("views")) {
+    const Json manifest = Json::parse(read("set/manifest.json"));
+    for (const Json& view : manifest.at("views")) {
         const Json record = Json::parse(read("set/" + view.at("record").get<std::string>()));
         EXPECT_EQ(record.at("frame"), view.at("frame"));
     }

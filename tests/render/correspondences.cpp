@@ -252,7 +252,8 @@ TEST_F(Flow, IsNoneWithoutANeighbourOrAPoint) {
     // Nothing is seen: no flow.
     const SceneDesc open = load("camera: {resolution: [8, 6], intrinsics: {fx: 25}, trajectory: " +
                                 std::string(k_turning) + "}\nrender: {fps: 10}\n");
-    for (const float value : render(open, {0}, "flow,flow_occluded").pixel(3, 3).subspan(4))
+    const Film nothing = render(open, {0}, "flow,flow_occluded");
+    for (const float value : nothing.pixel(3, 3).subspan(4))
         EXPECT_TRUE(std::isnan(value));
 }
 
