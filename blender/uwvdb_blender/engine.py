@@ -11,7 +11,7 @@ import numpy
 from mathutils import Matrix
 
 from . import bands as colours
-from . import exr, motion, passes, preferences, program, scene as scenes, viewport
+from . import exr, motion, passes, preferences, program, scene as scenes, units, viewport
 from .notes import Notes, Refusal
 
 # uwvdb counts frames from 0; movement is looked at a little before the frame, too.
@@ -181,7 +181,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
         rate = scenes.frame_rate(scene)
         # On uwvdb's clock the shutter is open around the frame's moment.
         moments = motion.Motion([_number(scene) + offset - centre for offset in offsets], rate)
-        to_metres = Matrix.Scale(scene.unit_settings.scale_length, 4)
+        to_metres = units.to_metres(scene)
         for at, offset in enumerate(offsets):
             frame = int((now + offset) // 1)
             self.frame_set(frame, now + offset - frame)

@@ -32,12 +32,12 @@ class Lamps:
             if instance.object.type == "LIGHT" and instance.show_self:
                 matrix = to_metres @ instance.matrix_world
                 poses = motion.rigid_poses(meshes.key_of(instance)) if motion is not None else None
-                self._add(instance.object, matrix, poses, surface)
+                self._add(instance.object, matrix, poses, surface, to_metres.median_scale)
 
     def _note(self, shown, text):
         self._notes.add(f"light '{shown.name}': {text}")
 
-    def _add(self, shown, matrix, poses, surface):
+    def _add(self, shown, matrix, poses, surface, metres_per_unit):
         light = shown.data
         emission = self._emission(shown, light)
         if emission is None:
@@ -60,6 +60,8 @@ class Lamps:
                          angle=min(math.degrees(light.angle), 90))
             self.entries.append(entry)
             return
+        # Cycles divides watts by squares of units. So does Blender's field of the power, which shows these watts.
+        watts = [value * metres_per_unit**2 for value in watts]
         self._place(entry, matrix, poses)
         if light.type == "AREA":
             self._shape(shown, entry, light, matrix, poses is not None)

@@ -5,10 +5,8 @@ import json
 import os
 import re
 
-from mathutils import Matrix
-
 from . import bands as colours
-from . import cameras, lamps, meshes, motion, volumes, water
+from . import cameras, lamps, meshes, motion, units, volumes, water
 from .notes import Refusal
 
 SCENE_FILE = "scene.yaml"  # JSON, which is YAML, too
@@ -35,7 +33,7 @@ def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelle
     moves, or None."""
     scene = depsgraph.scene
     folder, name = os.path.split(path)
-    to_metres = metres_of(scene)
+    to_metres = units.to_metres(scene)
     bands = colours.parse(scene.uwvdb.bands)
     world_from_camera = to_metres @ view.matrix
     content = {"uwvdb": 1}
@@ -56,13 +54,8 @@ def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelle
     _add_sensor(content, view.camera.data.uwvdb, bands, notes)
     with open(path, "w", encoding="utf-8") as file:
         json.dump(content, file, indent=1)
-    return Written(path, bands, mesh_file, to_metres.median_scale,
+    return Written(path, bands, mesh_file, units.metres_per_unit(scene),
                    [lamp["name"] for lamp in content["lamps"]])
-
-
-def metres_of(scene):
-    """The matrix that makes metres of Blender's units."""
-    return Matrix.Scale(scene.unit_settings.scale_length, 4)
 
 
 def geometry_entry(scene, mesh_file):
@@ -73,7 +66,7 @@ def describe_water_and_lamps(depsgraph, folder, moments, plumes, notes):
     """The sections of the water, the lamps and the volumes. Files of lamps are written into the folder,
     and volumes linked."""
     scene = depsgraph.scene
-    to_metres, bands = metres_of(scene), colours.parse(scene.uwvdb.bands)
+    to_metres, bands = units.to_metres(scene), colours.parse(scene.uwvdb.bands)
     result = {"water": water.describe(scene, bands, to_metres)}
     lights = lamps.Lamps(folder, bands, notes)
     lights.add_all(depsgraph, to_metres, moments, result["water"].get("surface"))

@@ -10,7 +10,7 @@ import numpy
 from mathutils import Matrix
 
 from . import bands as colours
-from . import emission, meshes, program
+from . import emission, meshes, program, units
 from .notes import Refusal
 
 class Source:
@@ -86,7 +86,7 @@ def _advice(source, look):
 def size_of(shown, scene):
     """The matrix that makes metres of the sizes in an object's file: a cache of a domain is as large
     there as in Blender's world."""
-    to_metres = Matrix.Scale(scene.unit_settings.scale_length, 4)
+    to_metres = units.to_metres(scene)
     return to_metres @ shown.matrix_world if shown.type == "VOLUME" else to_metres
 
 
@@ -179,7 +179,7 @@ class Volumes:
         domain = meshes.domain_settings(shown) if shown.type == "MESH" else None
         found = emission.of_object(shown, domain, {name.removesuffix(suffix) for name in names},
                                    colours.parse(scene.uwvdb.bands),
-                                   Matrix.Scale(scene.unit_settings.scale_length, 4), self._notes)
+                                   units.metres_per_unit(scene), self._notes)
         # The name of its lamp: letters, digits and hyphens.
         number = len(self.entries)
         return {grid + suffix: {**light, "name": re.sub("[^A-Za-z0-9-]", "-", f"volume{number}-{grid}")[:64]}

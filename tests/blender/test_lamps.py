@@ -25,17 +25,19 @@ def places(passes):
 
 
 def test_point_light_is_watts_over_the_sphere():
-    floor_scene()
+    """Both are Blender's own, by its units of length, whatever their Unit Scale."""
+    scene = floor_scene()
     light("POINT", watts=200, location=(-0.5, 0.4, 2.5), color=(1, 0.5, 0.25))
     bpy.data.objects.remove(bpy.data.objects["Box"])
-    passes = render()
-    position, on_floor = places(passes)
-    away = numpy.array([-0.5, 0.4, 2.5]) - position
-    r = numpy.linalg.norm(away, axis=-1, keepdims=True)
-    wanted = 200 / (4 * math.pi) * away[..., 2:] / r**3 * numpy.array([1, 0.5, 0.25])
-    # The position is that of the pixel's centre, the light a mean over its samples.
-    close(passes["irradiance"], wanted, 2e-4, "irradiance", on_floor)
-    close(passes["Combined"][..., :3], wanted * 0.8 / math.pi, 2e-4, "radiance", on_floor)
+    for scene.unit_settings.scale_length in (1, 0.01):
+        passes = render()
+        position, on_floor = places(passes)
+        away = numpy.array([-0.5, 0.4, 2.5]) - position
+        r = numpy.linalg.norm(away, axis=-1, keepdims=True)
+        wanted = 200 / (4 * math.pi) * away[..., 2:] / r**3 * numpy.array([1, 0.5, 0.25])
+        # The position is that of the pixel's centre, the light a mean over its samples.
+        close(passes["irradiance"], wanted, 2e-4, "irradiance", on_floor)
+        close(passes["Combined"][..., :3], wanted * 0.8 / math.pi, 2e-4, "radiance", on_floor)
 
 
 def test_sun_is_watts_per_square_metre():
