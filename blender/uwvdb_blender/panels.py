@@ -281,7 +281,7 @@ class UWVDB_OT_read_grids(bpy.types.Operator):
             depsgraph = context.evaluated_depsgraph_get()
             source = volumes.source_of(shown.evaluated_get(depsgraph), context.scene.frame_current)
             if source is None:
-                raise Refusal(f"'{shown.name}' has no volume")
+                raise Refusal(f"'{shown.name}' has no volume in this frame")
             path = program.find(preferences.chosen_program())
             mapped, names = volumes.for_size(volumes.advice(path, source),
                                                volumes.size_of(shown, context.scene))

@@ -22,7 +22,7 @@ class Source:
 
 
 def source_of(shown, frame):
-    """The Source of an object in a frame, None if it has no volume; Refusal if its file is not there."""
+    """The Source of an object in a frame, None if it has no volume then; Refusal if its file is not there."""
     if shown.type == "VOLUME":
         return _of_volume_object(shown)
     settings = meshes.domain_settings(shown) if shown.type == "MESH" else None
@@ -33,8 +33,10 @@ def _of_volume_object(shown):
     data = shown.data
     if not data.filepath:
         return None
-    data.grids.load()
-    path = data.grids.frame_filepath or bpy.path.abspath(data.filepath, library=data.library)
+    is_loaded, path = data.grids.load(), data.grids.frame_filepath
+    if is_loaded and not path:
+        return None  # The frame is outside a sequence that is clipped.
+    path = path or bpy.path.abspath(data.filepath, library=data.library)
     if not os.path.isfile(path):
         raise Refusal(f"volume '{shown.name}': there is no file {path}")
     return Source(path, _pattern(path) if data.is_sequence else path, False)
