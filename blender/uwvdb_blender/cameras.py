@@ -101,12 +101,10 @@ def _lens(data, to_metres, world_from_camera, notes):
         distance = abs((place - world_from_camera.translation).dot(axes.col[2]))
     else:
         distance = dof.focus_distance * to_metres.median_scale
-    if dof.aperture_blades > 0 or dof.aperture_ratio != 1:
-        notes.add("the aperture is a circle: its blades and ratio are left out")
     focal_length = data.lens / 1000
     if not data.uwvdb.use_sensor:
         focal_length *= to_metres.median_scale  # Cycles takes a lens of 50 mm for 0.05 units.
-    elif to_metres.median_scale != 1:
+    elif abs(to_metres.median_scale - 1) > 1e-6:
         notes.add("depth of field is that of the lens in millimetres, as the sensor needs it; without a sensor it is "
                   "as in Cycles, which takes 1000 mm for a unit")
     return {"f_number": dof.aperture_fstop, "focal_length": focal_length,

@@ -4,6 +4,7 @@ import bpy
 
 from . import meshes, preferences, program, volumes
 from .notes import Refusal
+from .words import Words
 
 # Panels of Blender for all engines, but for what uwvdb does not have.
 WITHOUT = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "WORLD_PT_preview",
@@ -286,7 +287,7 @@ class UWVDB_OT_read_grids(bpy.types.Operator):
             mapped, names = volumes.for_size(volumes.advice(path, source),
                                                volumes.size_of(shown, context.scene))
         except Refusal as refusal:
-            self.report({"ERROR"}, str(refusal))
+            self.report({"ERROR"}, Words().why(refusal))
             return {"CANCELLED"}
         grids = shown.uwvdb.grids
         grids.clear()

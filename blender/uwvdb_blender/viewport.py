@@ -8,9 +8,10 @@ import gpu
 from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix, Vector
 
-from . import cameras, meshes, preferences, program, scene as scenes, units, volumes
+from . import cameras, features, meshes, preferences, program, scene as scenes, units, volumes
 from .notes import Notes, Refusal
 from .session import Session
+from .words import Words
 
 SECONDS_BETWEEN_LOOKS = 0.02
 SECONDS_OF_READING = 0.008  # at a time, between two drawings of the view
@@ -69,6 +70,7 @@ class Surroundings:
         self._unfinished = None              # the meshes.MeshFile that is being read
         self._known = {}                     # what it read of objects that do not change
         self._mesh_notes, self._notes, self._content = Notes(), Notes(), {}
+        self.words = Words()
 
     @property
     def notes(self):
@@ -88,8 +90,9 @@ class Surroundings:
         self._notes = Notes()
         plumes = volumes.Volumes(self._session.folder, self._notes,
                                  lambda source: volumes.advice_soon(self._program, source))
-        content = scenes.describe_water_and_lamps(depsgraph, self._session.folder, None, plumes,
-                                                  self._notes)
+        content, self.words = scenes.describe_water_and_lamps(depsgraph, self._session.folder, None, plumes,
+                                                              self._notes)
+        features.note_all(depsgraph, self._notes)
         content["render"] = self._render(depsgraph.scene)
         self._content = content
 
@@ -186,7 +189,8 @@ class Viewport:
             self._surroundings.read_on(depsgraph)
         elif self._is_new or frame.camera != self._shown:
             self._shown, self._is_new = frame.camera, False
-            self._session.show(self._surroundings.with_camera(frame.camera), self._surroundings.meshes)
+            self._session.show(self._surroundings.with_camera(frame.camera), self._surroundings.words,
+                               self._surroundings.meshes)
         picture = self._session.picture
         if picture is not None:
             if self._drawn is not picture:

@@ -12,6 +12,7 @@ from mathutils import Matrix
 from . import bands as colours
 from . import emission, meshes, program, units
 from .notes import Refusal
+from .words import Words
 
 class Source:
     """A file of an object's volume in this frame, a name that stands for all frames (for advice), and
@@ -120,23 +121,26 @@ class Volumes:
 
     def __init__(self, folder, notes, advise):
         self._folder, self._notes, self._advise = folder, notes, advise
-        self.entries = []
+        self.entries, self.objects = [], []  # of the section, and the names and files of their objects
 
     def add_all(self, depsgraph, to_metres):
         for instance in depsgraph.object_instances:
             shown = instance.object
-            if not instance.show_self:
+            if not instance.show_self or meshes.is_unseen(instance, depsgraph.view_layer):
                 continue
             try:
                 source = source_of(shown, depsgraph.scene.frame_current)
                 if source is not None:
                     self._add(shown, source, depsgraph.scene, to_metres @ instance.matrix_world)
             except Refusal as missing:
-                self._notes.add(f"{missing}; it is left out")
+                self._notes.add(f"{Words().why(missing)}; it is left out")
         if self.entries and depsgraph.scene.render.use_motion_blur:
             self._notes.add("volumes stand still while the shutter is open")
 
     def _add(self, shown, source, scene, matrix):
+        if meshes.axes_of(matrix) < 3:
+            self._notes.add(f"'{shown.name}' is left out: its scale is 0")
+            return
         # Under a name of its own: the file's place says nothing that Blender does not know better.
         # It differs from file to file, so that whoever reads the scene again sees that one has changed.
         state = f"{os.path.abspath(source.path)} {os.stat(source.path).st_mtime_ns}"
@@ -169,6 +173,7 @@ class Volumes:
             return
         with contextlib.suppress(FileExistsError):
             os.symlink(os.path.abspath(source.path), os.path.join(self._folder, link))
+        self.objects.append((shown.name, source.path))
         self.entries.append({"file": link, **content, "centering": "cell", "up": "y", **extra,
                              "transform": self._transform(shown, matrix @ of_file)})
 
