@@ -27,13 +27,14 @@ def describe(depsgraph, camera, size, to_metres, world_from_camera, shift_x, not
     settings = data.uwvdb
     if settings.calibration:
         result = {"calibration": bpy.path.abspath(settings.calibration)}
-    elif data.type == "ORTHO":
-        raise Refusal(f"camera '{camera.name}' is orthographic: uwvdb has perspective cameras and "
-                      "fisheyes (Camera > Lens > Type)")
     elif data.type == "PANO":
         result.update(_fisheye(data, size, notes))
-    else:
+    elif data.type == "PERSP":
         result["intrinsics"] = _intrinsics(depsgraph, camera, size, shift_x)
+    else:
+        kind = "is orthographic" if data.type == "ORTHO" else f"is of the type {data.type}"
+        raise Refusal(f"camera '{camera.name}' {kind}: uwvdb has perspective cameras and fisheyes (Camera > Lens > "
+                      "Type)")
     if settings.housing != "NONE":
         result["port"] = _port(settings, to_metres.median_scale)
     if data.dof.use_dof and data.type == "PERSP":

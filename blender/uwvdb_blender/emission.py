@@ -123,6 +123,8 @@ class _Shader:
                        "light is left out")
             return []
         reading, number = found
+        if number < 0:
+            self._note("its negative emission strength is left out")
         if number <= 0:
             return []
         if reading is None:

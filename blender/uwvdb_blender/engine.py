@@ -18,6 +18,7 @@ from .words import Words
 # uwvdb counts frames from 0; movement is looked at a little before the frame, too.
 FRAME_OFFSET = 10
 MOTION_STEPS = 5
+MOST_FRAMES_OPEN = 100_000  # of the shutter; Blender has no frames much farther away
 PREVIEW_PART = 4  # of the image's sides
 LEAST_PREVIEWED = 200 * 150
 SECONDS_BETWEEN_LINES = 5
@@ -173,6 +174,9 @@ class UwvdbEngine(bpy.types.RenderEngine):
         offsets = set()
         centre = 0.0
         if render.use_motion_blur:
+            if render.motion_blur_shutter > MOST_FRAMES_OPEN:
+                raise Refusal(f"Render > Motion Blur > Shutter: {render.motion_blur_shutter:g} frames is longer than "
+                              f"{MOST_FRAMES_OPEN}")
             centre = {"START": 0.5, "CENTER": 0.0, "END": -0.5}[_shutter_position(scene)]
             centre *= render.motion_blur_shutter
             offsets |= {centre + render.motion_blur_shutter * (step / (MOTION_STEPS - 1) - 0.5)

@@ -336,6 +336,8 @@ class Exporter:
     def _set_emission(self, material, done, colour, strength):
         self._unlinked(material, strength)
         value = float(strength.default_value)
+        if value < 0:
+            self._note(material, "takes no light away: its negative emission is left out")
         if value <= 0:
             return
         constant, sources = self._product(colour)

@@ -81,6 +81,8 @@ PHRASES = (
     (r"\bfx = (\S+) pixels", r"a focal length of \1 pixels"),
     (r"give fx >= \S+, or a distortion of the fisheye model",
      "choose a longer camera.lens.focal_length, or a panoramic Camera > Lens > Type"),
+    (r"; names are relative to the scene file's folder", ""),
+    (r"\buse integrator volume\b", "choose render.integrator: volume"),
     (r"; choose one: calibration: \{file.*", "; keep one of them in the file"),
     (r"give water: \{surface: \{.*?\}\}", "switch on water.surface"),
     (r"--integrator path with --error", "--integrator path and --error"),
@@ -98,8 +100,9 @@ CODE = re.compile(r"--[a-z]|[`{}]|\b[A-Za-z]*[a-z0-9]_[a-z]\w*|(?<![\w/.])[a-z]+
                   r"'[a-z]+: |\b[a-z]+: (?:true|false|all|[\d\[])")
 LINK = re.compile(r"volume(\d+)-[0-9a-f]{8}\.vdb")
 LIGHT_OF_VOLUME = re.compile(r"'?\bvolume(\d+)-[A-Za-z0-9-]+'?")
+FILES = "n?vdb|yaml|glb|csv|exr|png|jpe?g|tiff?|ies|txt|md|json|obj|ply"
 QUOTED = re.compile(r"(?<!\w)'[^'{}]*[/.~][^'{}]*'(?!\w)|(?<=grid )'[^']*'|(?<=light )'[^']*'|(?<=volume )'[^']*'|"
-                    r"(?<![\w.])/[^ :;,]+")
+                    rf"(?<![\w.])/[^ :;,]+|(?<![\w./])[\w-]+\.(?:{FILES})\b")
 
 
 class Words:
@@ -116,7 +119,7 @@ class Words:
     def of(self, line):
         """A line without the place in a scene file, in Blender's words."""
         line = line.strip().removeprefix("uwvdb: ")
-        line = re.sub(r"(^|(?<= ))[^ ]*\.yaml:\d+:\d+: ", "", line)
+        line = re.sub(r"(^|(?<= ))(?:[^ ]*/)?scene\.yaml(?::\d+:\d+)?: ", "", line)
         if self._folder:
             line = line.replace(self._folder.rstrip(os.sep) + os.sep, "")
         line = re.sub(r"\b(?:image|left|right)/", "", line)
@@ -132,11 +135,13 @@ class Words:
             kept.append(match[0])
             return f"\0{len(kept) - 1}\0"
 
-        line = self._section(QUOTED.sub(keep, line))
+        line = self._section(re.sub(r"(?<=\0 has )[^;]*", keep, QUOTED.sub(keep, line)))
         line = re.sub(r"--set (\S+?)=(\w+)", r"\1: \2", line)
         line = re.sub(r"--([a-z-]+)(?: (\w[\w.,-]*))?", self._option, line)
         line = self._without_code(PATH.sub(self._path, line))
-        return re.sub(r"\0(\d+)\0", lambda m: kept[int(m[1])], line)
+        for number in reversed(range(len(kept))):  # the later ones may hold the earlier
+            line = line.replace(f"\0{number}\0", kept[number])
+        return line
 
     def _volume(self, number, part):
         return self._volumes[number][part] if number < len(self._volumes) else "volume"

@@ -46,10 +46,31 @@ def ends_of(item):
     return [[end] * item.array_length if item.is_array else end for end in ends]
 
 
+def without_faults(engine):
+    """Blender prints errors of Python in an engine, and goes on: here they are raised afterwards."""
+    faults, render_as_it_is = [], engine.UwvdbEngine._render
+
+    def watched(self, *arguments):
+        try:
+            render_as_it_is(self, *arguments)
+        except (sys.modules["uwvdb_blender.notes"].Refusal, OSError):
+            raise
+        except Exception as fault:
+            faults.append(fault)
+
+    engine.UwvdbEngine._render = watched
+    try:
+        bpy.ops.render.render()
+    finally:
+        engine.UwvdbEngine._render = render_as_it_is
+    if faults:
+        raise faults[0]
+
+
 def settles(what, known):
     """Renders; all that is said is in Blender's words."""
     try:
-        bpy.ops.render.render()
+        without_faults(sys.modules["uwvdb_blender.engine"])
         told = list(notes())
     except RuntimeError as error:
         told = [str(error).strip().removeprefix("Error: ")]

@@ -110,6 +110,12 @@ def test_what_can_be_set_in_blender_is_named_there():
             ("/tmp/scene/scene-meshes.glb: the mesh has no triangles; check what was exported, or take the camera or "
              "lamps of a glTF file (camera: true, lamps: all)",
              "the meshes: the mesh has no triangles"),
+            ("/tmp/scene/image/scene.yaml: camera: it lies above water.surface, but all that it sees counts as water; move "
+             "it below", "the camera: it lies above World > Water > Surface, but all that it sees counts as water; move "
+             "it below"),
+            ("/dive/rig_two.yaml: has 2 cameras (cam0, cam1); choose one: calibration: {file: ..., camera: cam0} in a "
+             "scene, --camera cam0 on the command line",
+             "/dive/rig_two.yaml: has 2 cameras (cam0, cam1); keep one of them in the file"),
             ("--samples and --error: each says how long to go on; give one of them",
              "Render > uwvdb > Samples and Render > uwvdb > Until Error: each says how long to go on; give one of them")):
         told = translate.of("uwvdb: " + said)
@@ -154,8 +160,12 @@ def test_every_key_that_the_add_on_writes_has_a_place():
 def test_lines_about_other_files_stay():
     """Of a file that is the user's own, its own words are the right ones."""
     translate = words()
-    for line in ("/dive/plume_0030.vdb: grid 'density_noise' is damaged", "'/dive/my_rig.yaml' cannot be read"):
-        assert translate.of(line) == line, translate.of(line)
+    for line in ("/dive/plume_0030.vdb: grid 'density_noise' is damaged", "'/dive/my_rig.yaml' cannot be read",
+                 "bad_file.vdb: '/dive/bad_file.vdb' is not a VDB file (it does not start like one)",
+                 "/dive/rig_two.yaml:1:1: is not in a known calibration format",
+                 "no grid 'no_such' ('/dive/a_b.vdb' has velocity (half vec3s, staggered), color_r (half float))"):
+        for before in ("", "uwvdb: "):
+            assert translate.of(before + line) == line, translate.of(line)
     # Nor is what the add-on says itself translated.
     own = sys.modules["uwvdb_blender.notes"].Refusal("camera 'left_eye' is orthographic; choose a 'lens'")
     assert translate.why(own) == str(own)
