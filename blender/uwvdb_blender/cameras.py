@@ -8,7 +8,7 @@ from mathutils import Matrix
 from .notes import Refusal
 
 PARALLEL = 1000  # heights of an orthographic view that its rays come from: 0.1 % from parallel
-HOUSING_NUMBERS = ("thickness", "n_air", "n_glass", "n_water")
+INDICES = ("n_air", "n_glass", "n_water")
 
 
 def pose_rows(world_from_camera):
@@ -27,15 +27,16 @@ def describe(depsgraph, camera, size, to_metres, world_from_camera, shift_x, not
     settings = data.uwvdb
     if settings.calibration:
         result = {"calibration": bpy.path.abspath(settings.calibration)}
-    elif data.type == "ORTHO":
-        raise Refusal(f"camera '{camera.name}' is orthographic: uwvdb has perspective cameras and "
-                      "fisheyes (Camera > Lens > Type)")
     elif data.type == "PANO":
         result.update(_fisheye(data, size, notes))
-    else:
+    elif data.type == "PERSP":
         result["intrinsics"] = _intrinsics(depsgraph, camera, size, shift_x)
+    else:
+        kind = "is orthographic" if data.type == "ORTHO" else f"is of the type {data.type}"
+        raise Refusal(f"camera '{camera.name}' {kind}: uwvdb has perspective cameras and fisheyes (Camera > Lens > "
+                      "Type)")
     if settings.housing != "NONE":
-        result["port"] = _port(settings)
+        result["port"] = _port(settings, to_metres.median_scale)
     if data.dof.use_dof and data.type == "PERSP":
         result["lens"] = _lens(data, to_metres, world_from_camera, notes)
     elif settings.use_sensor:
@@ -73,21 +74,22 @@ def _fisheye(data, size, notes):
             "distortion": {"model": "fisheye"}}
 
 
-def _port(settings):
+def _port(settings, metres_per_unit):
     port = {"type": settings.housing.lower(), "fresnel": settings.fresnel,
             "radiance_in": settings.radiance_in.lower()}
-    port.update({name: getattr(settings, name) for name in HOUSING_NUMBERS})
+    port["thickness"] = settings.thickness * metres_per_unit
+    port.update({name: getattr(settings, name) for name in INDICES})
     for name in ("glass", "water"):
         if getattr(settings, name) != "NUMBER":
             port[f"n_{name}"] = getattr(settings, name).lower()
     if settings.housing == "FLAT":
-        port["distance"] = settings.distance
+        port["distance"] = settings.distance * metres_per_unit
         tilt, towards = settings.tilt, settings.tilt_towards
         port["normal"] = [math.sin(tilt) * math.cos(towards), -math.sin(tilt) * math.sin(towards),
                           math.cos(tilt)]
     else:
-        port["radius"] = settings.radius
-        x, y, z = settings.center
+        port["radius"] = settings.radius * metres_per_unit
+        x, y, z = (length * metres_per_unit for length in settings.center)
         port["center"] = [x, -y, z]
     return port
 
@@ -100,10 +102,14 @@ def _lens(data, to_metres, world_from_camera, notes):
         distance = abs((place - world_from_camera.translation).dot(axes.col[2]))
     else:
         distance = dof.focus_distance * to_metres.median_scale
-    if dof.aperture_blades > 0 or dof.aperture_ratio != 1:
-        notes.add("the aperture is a circle: its blades and ratio are left out")
-    return {"f_number": dof.aperture_fstop, "focal_length": data.lens / 1000,
-            "focus_distance": max(distance, data.lens / 1000 * 1.001)}
+    focal_length = data.lens / 1000
+    if not data.uwvdb.use_sensor:
+        focal_length *= to_metres.median_scale  # Cycles takes a lens of 50 mm for 0.05 units.
+    elif abs(to_metres.median_scale - 1) > 1e-6:
+        notes.add("depth of field is that of the lens in millimetres, as the sensor needs it; without a sensor it is "
+                  "as in Cycles, which takes 1000 mm for a unit")
+    return {"f_number": dof.aperture_fstop, "focal_length": focal_length,
+            "focus_distance": max(distance, focal_length * 1.001)}
 
 
 def of_view(window_matrix, view_matrix, size, to_metres):

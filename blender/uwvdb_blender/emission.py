@@ -43,14 +43,14 @@ def emits(shown):
         for name in ("Emission Strength", "Blackbody Intensity"))
 
 
-def of_object(shown, domain, grids, bands, to_metres, notes):
+def of_object(shown, domain, grids, bands, metres_per_unit, notes):
     """{grid: its entry in `emission`} of an object whose volume's file has these grids; `domain` are the
     settings of a fluid domain, or None."""
     node = _principled(shown)
     if node is None:
         return {}
     # Cycles counts by Blender's units, and makes a Volume object brighter that is scaled down.
-    factor = _object_density(shown) / to_metres.median_scale
+    factor = _object_density(shown) / metres_per_unit
     shader = _Shader(shown, domain, grids, notes)
     by_grid = {}
     for light in shader.strength(node, factor) + shader.blackbody(node, factor):
@@ -123,6 +123,8 @@ class _Shader:
                        "light is left out")
             return []
         reading, number = found
+        if number < 0:
+            self._note("its negative emission strength is left out")
         if number <= 0:
             return []
         if reading is None:

@@ -11,12 +11,14 @@ import numpy
 from mathutils import Matrix
 
 from . import bands as colours
-from . import exr, motion, passes, preferences, program, scene as scenes, viewport
+from . import exr, motion, passes, preferences, program, scene as scenes, units, viewport
 from .notes import Notes, Refusal
+from .words import Words
 
 # uwvdb counts frames from 0; movement is looked at a little before the frame, too.
 FRAME_OFFSET = 10
 MOTION_STEPS = 5
+MOST_FRAMES_OPEN = 100_000  # of the shutter; Blender has no frames much farther away
 PREVIEW_PART = 4  # of the image's sides
 LEAST_PREVIEWED = 200 * 150
 SECONDS_BETWEEN_LINES = 5
@@ -69,6 +71,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
     _told_at = 0.0  # when progress was shown
     _viewport = None
     _refusal = ""
+    _words = Words()
 
     def __del__(self):
         if self._viewport is not None:
@@ -111,7 +114,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
         except program.Stopped:
             pass
         except Refusal as refusal:
-            self.report({"ERROR"}, f"uwvdb: {scenes.own_words(str(refusal), folder)}")
+            self.report({"ERROR"}, f"uwvdb: {self._words.why(refusal)}")
         except OSError as error:
             self.report({"ERROR"}, f"uwvdb: {error.filename}: cannot write: {error.strerror}")
         finally:
@@ -123,6 +126,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
 
     def _render(self, depsgraph, folder, notes):
         scene = depsgraph.scene
+        self._words = Words(folder)
         if scene.camera is None:
             raise Refusal("the scene has no camera")
         path = program.find(preferences.chosen_program())
@@ -138,6 +142,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
             view = self._view(depsgraph)
             moments = self._moments(depsgraph)
             written = scenes.write(depsgraph, file, path, view, size, moments, notes, self.test_break)
+            self._words = written.words
             if _export:
                 image = os.path.splitext(written.path)[0] + ".exr"
                 _export.commands.append(self._image_arguments(depsgraph, path, written, size, image))
@@ -169,6 +174,9 @@ class UwvdbEngine(bpy.types.RenderEngine):
         offsets = set()
         centre = 0.0
         if render.use_motion_blur:
+            if render.motion_blur_shutter > MOST_FRAMES_OPEN:
+                raise Refusal(f"Render > Motion Blur > Shutter: {render.motion_blur_shutter:g} frames is longer than "
+                              f"{MOST_FRAMES_OPEN}")
             centre = {"START": 0.5, "CENTER": 0.0, "END": -0.5}[_shutter_position(scene)]
             centre *= render.motion_blur_shutter
             offsets |= {centre + render.motion_blur_shutter * (step / (MOTION_STEPS - 1) - 0.5)
@@ -181,7 +189,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
         rate = scenes.frame_rate(scene)
         # On uwvdb's clock the shutter is open around the frame's moment.
         moments = motion.Motion([_number(scene) + offset - centre for offset in offsets], rate)
-        to_metres = Matrix.Scale(scene.unit_settings.scale_length, 4)
+        to_metres = units.to_metres(scene)
         for at, offset in enumerate(offsets):
             frame = int((now + offset) // 1)
             self.frame_set(frame, now + offset - frame)
@@ -194,11 +202,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
         arguments = self._image_arguments(depsgraph, path, written, size, out)
         for line in program.run(arguments, folder, self.test_break, self._on_progress):
             kind, _, text = line.partition(": ")
-            if kind == "warning":
-                notes.add(scenes.own_words(text.strip(), folder))
-            elif kind == "note" and not _has_said(LEFT_OUT):
-                notes.add(text.strip().replace("render.scattering: multiple",
-                                               "Render > uwvdb > Scattering: Multiple"))
+            if kind == "warning" or kind == "note" and not _has_said(LEFT_OUT):
+                notes.add(written.words.of(text))
         return exr.read(out)
 
     def _image_arguments(self, depsgraph, path, written, size, out):

@@ -9,7 +9,7 @@ import bpy
 from mathutils import Vector
 
 from . import bands as colours
-from . import meshes
+from . import features, meshes
 from .materials import source_of
 
 # Cycles multiplies an emission by a luminaire's candelas over this (candelas to watts at 555 nm and
@@ -25,28 +25,34 @@ class Lamps:
     def __init__(self, folder, bands, notes):
         self._folder, self._bands, self._notes = folder, bands, notes
         self._names = set()
-        self.entries = []
+        self.entries, self.objects = [], []  # of the section, and the names of their objects
 
     def add_all(self, depsgraph, to_metres, motion, surface):
         for instance in depsgraph.object_instances:
             if instance.object.type == "LIGHT" and instance.show_self:
                 matrix = to_metres @ instance.matrix_world
                 poses = motion.rigid_poses(meshes.key_of(instance)) if motion is not None else None
-                self._add(instance.object, matrix, poses, surface)
+                self._add(instance.object, matrix, poses, surface, to_metres.median_scale)
 
     def _note(self, shown, text):
         self._notes.add(f"light '{shown.name}': {text}")
 
-    def _add(self, shown, matrix, poses, surface):
+    def _add(self, shown, matrix, poses, surface, metres_per_unit):
         light = shown.data
-        emission = self._emission(shown, light)
+        emission = self._emission(shown, light) if not features.is_portal(light) else None
         if emission is None:
             return
         strength, ies = emission
-        if max(strength) <= 0:
-            return
         energy = light.energy * 2 ** getattr(light, "exposure", 0)  # of Blender 4.4
         watts = [energy * value for value in colours.from_rgb(strength, self._bands)]
+        if min(watts) < 0:
+            self._note(shown, "is left out: it would take light away, as its Power or Strength is negative")
+            return
+        if max(strength) == 0:
+            return
+        if light.type != "POINT" and meshes.axes_of(matrix) < 3:
+            self._note(shown, "is left out: its scale is 0")
+            return
         entry = {"name": self._name(shown.name)}
         if light.type == "SUN":
             if surface is None:
@@ -58,10 +64,15 @@ class Lamps:
             axis = -matrix.to_3x3().col[2].normalized()
             entry.update(type="sun", direction=list(axis), irradiance=watts,
                          angle=min(math.degrees(light.angle), 90))
-            self.entries.append(entry)
+            self._append(shown, entry)
             return
+        # Cycles divides watts by squares of units. So does Blender's field of the power, which shows these watts.
+        watts = [value * metres_per_unit**2 for value in watts]
         self._place(entry, matrix, poses)
         if light.type == "AREA":
+            if light.size * (light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size) == 0:
+                self._note(shown, "is left out: its Size is 0")
+                return
             self._shape(shown, entry, light, matrix, poses is not None)
             # W/sr on the axis per watt; the watts of Blender 3 are not those that an area emits.
             factor = 1 / math.pi if bpy.app.version >= (4, 0, 0) else 1 / 4
@@ -93,12 +104,11 @@ class Lamps:
             entry["profile"] = {"type": "ies", "file": file, "rotate": turn}
             factor *= 4 * math.pi / IES_UNIT * reference
         entry["intensity"] = [value * factor for value in watts]
-        linking = getattr(shown, "light_linking", None)  # of Blender 4.0
-        if linking is not None and (linking.receiver_collection or linking.blocker_collection):
-            self._note(shown, "lights everything, whatever it is linked to")
-        if not getattr(light, "use_shadow", True):
-            self._note(shown, "casts shadows here although they are switched off")
+        self._append(shown, entry)
+
+    def _append(self, shown, entry):
         self.entries.append(entry)
+        self.objects.append(shown.name)
 
     def _name(self, name):
         plain = plain_name(name)
@@ -115,8 +125,10 @@ class Lamps:
         if poses is not None:
             entry.update(position=[0, 0, 0], direction=[0, 0, -1], trajectory=poses)
             return
-        entry.update(frame="world", position=list(matrix.translation),
-                     direction=list(-matrix.to_3x3().col[2].normalized()))
+        entry.update(frame="world", position=list(matrix.translation))
+        axis = -matrix.to_3x3().col[2].normalized()
+        if axis.length > 0:
+            entry["direction"] = list(axis)
 
     def _shape(self, shown, entry, light, matrix, moves):
         scale = matrix.to_scale()
@@ -137,8 +149,9 @@ class Lamps:
         # A spot whose object is scaled along its axis has another cone in Cycles, too.
         size, blend = math.degrees(light.spot_size), light.spot_blend
         falloff = "blender" if bpy.app.version >= (3, 5, 0) else "blender-3.4"
-        beam = size * (1 - blend / 2)
-        return {"type": "spot", "beam": min(beam, 180), "edge": size * blend / 2, "falloff": falloff}
+        size = min(size, 180)  # Blender's greatest is more by its rounding.
+        edge = size * blend / 2
+        return {"type": "spot", "beam": size - edge, "edge": edge, "falloff": falloff}
 
     def _emission(self, shown, light):
         """(linear RGB by which the watts are multiplied, (IES file, its greatest candelas) or None);

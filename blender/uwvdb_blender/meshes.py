@@ -10,8 +10,7 @@ from . import gltf, materials
 SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 WITHOUT_SURFACE = {"EMPTY", "CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER", "ARMATURE", "LATTICE",
                    "VOLUME"}
-UNKNOWN = {"CURVES": "hair curves", "HAIR": "hair curves", "POINTCLOUD": "point clouds",
-           "GPENCIL": "Grease Pencil", "GREASEPENCIL": "Grease Pencil"}
+UNKNOWN = {"CURVES", "HAIR", "POINTCLOUD"}
 
 
 def domain_settings(shown):
@@ -31,12 +30,35 @@ def key_of(instance):
     return instance.object.name_full, parent, persistent
 
 
+def shower_of(instance):
+    """The object of the view layer that an instance belongs to."""
+    return instance.parent if instance.is_instance and instance.parent is not None else instance.object
+
+
+def of_collection(shower, name, layer):
+    """Whether a view layer's collections have what the function of this name of an object tells."""
+    return getattr(shower.original, name)(view_layer=layer)
+
+
+def is_unseen(instance, layer):
+    """Whether the camera does not see an object, which then is left out."""
+    return (not instance.object.visible_camera
+            or of_collection(shower_of(instance), "indirect_only_get", layer))
+
+
+def axes_of(matrix):
+    """How many of its axes a matrix leaves: fewer than three where a scale is 0."""
+    return sum(column.length_squared > 0 for column in matrix.to_3x3().col)
+
+
 def surfaces(depsgraph):
     """Instances that the render shows as surfaces."""
     for instance in depsgraph.object_instances:
         shown = instance.object
-        if not instance.show_self or shown.type not in SURFACES:
+        if not instance.show_self or shown.type not in SURFACES or is_unseen(instance, depsgraph.view_layer):
             continue
+        if axes_of(instance.matrix_world) < 2:
+            continue  # What is a line or a point has no surface.
         if shown.type == "MESH" and domain_settings(shown) is not None:
             continue
         yield instance
@@ -65,30 +87,14 @@ class MeshFile:
         end = time.monotonic() + seconds
         try:
             for instance in surfaces(depsgraph):
-                if instance.object.visible_camera:
-                    self._mesh(instance.object, depsgraph, end)
+                self._mesh(instance.object, depsgraph, end)
         except _TimeIsUp:
             return False
         return True
 
     def add_all(self, depsgraph, to_metres, motion):
-        for instance in depsgraph.object_instances:
-            if instance.object.type in UNKNOWN and instance.show_self:
-                self._notes.add(f"{UNKNOWN[instance.object.type]} are left out")
-            if instance.show_particles and any(s.settings.render_type == "PATH"
-                                               for s in instance.object.particle_systems):
-                self._notes.add("hair of particle systems is left out")
         for instance in surfaces(depsgraph):
             shown = instance.object
-            if not shown.visible_camera:
-                self._notes.add(f"'{shown.name}' is not visible to cameras and left out, its shadow, "
-                                "too")
-                continue
-            if shown.is_holdout or shown.is_shadow_catcher:
-                self._notes.add(f"'{shown.name}' is a plain surface: holdouts and shadow catchers are "
-                                "not supported")
-            if not shown.visible_shadow:
-                self._notes.add(f"'{shown.name}' casts a shadow here")
             mesh = self._mesh(shown, depsgraph)
             if mesh is None:
                 continue
@@ -145,7 +151,9 @@ class MeshFile:
         parts = []
         for index in corners.used_slots():
             material = slots[index] if slots else None
-            if materials.shows_surface(material):
+            if materials.is_clear(material):
+                self._materials.note_clear(material)
+            elif materials.shows_surface(material):
                 parts.append(_Part(index, *self._materials.export(material)))
             else:
                 self._notes.add(f"the volume of '{shown.name}' is left out: its material has a volume "

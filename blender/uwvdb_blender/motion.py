@@ -1,5 +1,9 @@
 """Where everything is at other moments than the frame's own, for motion blur and the Vector pass."""
 
+import zlib
+
+import numpy
+
 from . import meshes
 
 CAMERA = "the camera"  # its key; others are tuples
@@ -12,14 +16,25 @@ class Motion:
         self.frames = frames
         self.times = [frame / rate for frame in frames]
         self._matrices = [{} for _ in frames]
+        self._shapes = {}  # checksums of the vertices of what may deform, by object
 
     def gather(self, depsgraph, at, world_from_camera, to_metres):
         """Keeps where everything is in the scene as it is evaluated now, as frames[at]."""
         known = self._matrices[at]
         for instance in depsgraph.object_instances:
-            if instance.object.type in meshes.SURFACES or instance.object.type == "LIGHT":
+            shown = instance.object
+            if shown.type in meshes.SURFACES or shown.type == "LIGHT":
                 known[meshes.key_of(instance)] = to_metres @ instance.matrix_world
+            if shown.type in meshes.SURFACES and _may_deform(shown):
+                shapes = self._shapes.setdefault(shown.name_full, {})
+                if at not in shapes:
+                    shapes[at] = _shape(shown)
         known[CAMERA] = world_from_camera
+
+    @property
+    def deforming(self):
+        """Names of the objects whose vertices move against each other, or change in number."""
+        return {name for name, shapes in self._shapes.items() if len(set(shapes.values())) > 1}
 
     def _of(self, key):
         """Its matrix at each time; None if it rests, or is not there all the time."""
@@ -56,3 +71,17 @@ class Motion:
 
     def camera_matrices(self, key):
         return self._of(key)
+
+
+def _may_deform(shown):
+    data = shown.original.data
+    return (len(shown.original.modifiers) > 0 or getattr(data, "shape_keys", None) is not None
+            or getattr(data, "animation_data", None) is not None or shown.type == "META")
+
+
+def _shape(shown):
+    mesh = shown.to_mesh()
+    vertices = numpy.empty(3 * len(mesh.vertices), numpy.float32)
+    mesh.vertices.foreach_get("co", vertices)
+    shown.to_mesh_clear()
+    return len(vertices), zlib.crc32(vertices.tobytes())

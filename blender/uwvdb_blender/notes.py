@@ -12,3 +12,5 @@ class Notes:
 
 class Refusal(Exception):
     """The scene cannot be rendered; the text says why, and how to mend it."""
+
+    is_by_program = False  # in its words, which words.py translates

@@ -4,6 +4,7 @@ import bpy
 
 from . import meshes, preferences, program, volumes
 from .notes import Refusal
+from .words import Words
 
 # Panels of Blender for all engines, but for what uwvdb does not have.
 WITHOUT = {"VIEWLAYER_PT_filter", "VIEWLAYER_PT_layer_passes", "RENDER_PT_freestyle", "WORLD_PT_preview",
@@ -281,12 +282,12 @@ class UWVDB_OT_read_grids(bpy.types.Operator):
             depsgraph = context.evaluated_depsgraph_get()
             source = volumes.source_of(shown.evaluated_get(depsgraph), context.scene.frame_current)
             if source is None:
-                raise Refusal(f"'{shown.name}' has no volume")
+                raise Refusal(f"'{shown.name}' has no volume in this frame")
             path = program.find(preferences.chosen_program())
             mapped, names = volumes.for_size(volumes.advice(path, source),
                                                volumes.size_of(shown, context.scene))
         except Refusal as refusal:
-            self.report({"ERROR"}, str(refusal))
+            self.report({"ERROR"}, Words().why(refusal))
             return {"CANCELLED"}
         grids = shown.uwvdb.grids
         grids.clear()

@@ -31,6 +31,8 @@ class Stopped(Exception):
 class Failed(Refusal):
     """The program ended with an error; the text is its own line."""
 
+    is_by_program = True
+
 
 def run(arguments, folder, is_cancelled, on_progress):
     """Runs the program in a folder and returns its messages. is_cancelled() is asked several times a

@@ -3,22 +3,20 @@ Blender's, z up, in metres."""
 
 import json
 import os
-import re
-
-from mathutils import Matrix
 
 from . import bands as colours
-from . import cameras, lamps, meshes, motion, volumes, water
+from . import cameras, features, lamps, meshes, motion, units, volumes, water
 from .notes import Refusal
+from .words import Words
 
 SCENE_FILE = "scene.yaml"  # JSON, which is YAML, too
 
 
 class Written:
-    """The scene's file and what is needed to read its images."""
+    """The scene's file and what is needed to read its images and messages."""
 
-    def __init__(self, path, bands, mesh_file, metres_per_unit, lamp_names):
-        self.path, self.bands = path, bands
+    def __init__(self, path, bands, mesh_file, metres_per_unit, lamp_names, words):
+        self.path, self.bands, self.words = path, bands, words
         self.pass_indices, self.material_indices = mesh_file.pass_indices, mesh_file.material_indices
         self.metres_per_unit, self.lamp_names = metres_per_unit, lamp_names
 
@@ -35,7 +33,7 @@ def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelle
     moves, or None."""
     scene = depsgraph.scene
     folder, name = os.path.split(path)
-    to_metres = metres_of(scene)
+    to_metres = units.to_metres(scene)
     bands = colours.parse(scene.uwvdb.bands)
     world_from_camera = to_metres @ view.matrix
     content = {"uwvdb": 1}
@@ -51,18 +49,15 @@ def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelle
         content["geometry"] = [geometry_entry(scene, glb_name)]
     plumes = volumes.Volumes(
         folder, notes, lambda source: volumes.advice(program_path, source, is_cancelled))
-    content.update(describe_water_and_lamps(depsgraph, folder, moments, plumes, notes))
+    features.note_all(depsgraph, notes, view.camera, moments)
+    described, words = describe_water_and_lamps(depsgraph, folder, moments, plumes, notes)
+    content.update(described)
     content["render"] = _render(scene, moments)
     _add_sensor(content, view.camera.data.uwvdb, bands, notes)
     with open(path, "w", encoding="utf-8") as file:
         json.dump(content, file, indent=1)
-    return Written(path, bands, mesh_file, to_metres.median_scale,
-                   [lamp["name"] for lamp in content["lamps"]])
-
-
-def metres_of(scene):
-    """The matrix that makes metres of Blender's units."""
-    return Matrix.Scale(scene.unit_settings.scale_length, 4)
+    return Written(path, bands, mesh_file, units.metres_per_unit(scene),
+                   [lamp["name"] for lamp in content["lamps"]], words)
 
 
 def geometry_entry(scene, mesh_file):
@@ -70,26 +65,18 @@ def geometry_entry(scene, mesh_file):
 
 
 def describe_water_and_lamps(depsgraph, folder, moments, plumes, notes):
-    """The sections of the water, the lamps and the volumes. Files of lamps are written into the folder,
-    and volumes linked."""
+    """(the sections of the water, the lamps and the volumes, the Words for what is said of them). Files of lamps
+    are written into the folder, and volumes linked."""
     scene = depsgraph.scene
-    to_metres, bands = metres_of(scene), colours.parse(scene.uwvdb.bands)
+    to_metres, bands = units.to_metres(scene), colours.parse(scene.uwvdb.bands)
     result = {"water": water.describe(scene, bands, to_metres)}
     lights = lamps.Lamps(folder, bands, notes)
     lights.add_all(depsgraph, to_metres, moments, result["water"].get("surface"))
     result["lamps"] = lights.entries
-    _note_world(scene.world, notes)
     plumes.add_all(depsgraph, to_metres)
     if plumes.entries:
         result["volumes"] = plumes.entries
-    return result
-
-
-def own_words(message, folder):
-    """A message without places in files that the user does not see."""
-    message = message.removeprefix("uwvdb: ")
-    return re.sub(rf"{re.escape(folder + os.sep)}[^ ]*?{re.escape(SCENE_FILE)}:\d+:\d+: ", "",
-                  message).replace(folder + os.sep, "")
+    return result, Words(folder, lights.objects, plumes.objects)
 
 
 def frame_rate(scene):
@@ -123,18 +110,6 @@ def _render(scene, moments):
     if moments is not None and shutter(scene) > 0:
         render["shutter"] = shutter(scene)
     return render
-
-
-def _note_world(world, notes):
-    if world is None or not world.use_nodes or world.node_tree is None:
-        has_light = world is not None and max(world.color) > 0
-    else:
-        has_light = any(node.type == "BACKGROUND" and (
-            node.inputs["Strength"].is_linked or node.inputs["Strength"].default_value > 0) and (
-            node.inputs["Color"].is_linked or max(node.inputs["Color"].default_value[:3]) > 0)
-            for node in world.node_tree.nodes)
-    if has_light:
-        notes.add("the world's background gives no light under water")
 
 
 def _add_sensor(content, settings, bands, notes):

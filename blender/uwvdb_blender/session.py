@@ -15,7 +15,8 @@ import weakref
 
 import numpy
 
-from .scene import SCENE_FILE, own_words
+from .scene import SCENE_FILE
+from .words import Words
 
 TOTAL = ("direct", "forward", "backscatter", "multiple", "snow")
 SECONDS_TO_ANSWER = 60
@@ -51,7 +52,7 @@ class Session:
         self.version, self.picture, self.message = 0, None, ""
         self.not_shown, self.is_final = [], False
         self._program, self._changed = program_path, threading.Condition()
-        self._wanted, self._is_closed = None, False
+        self._wanted, self._is_closed, self._words = None, False, Words()
         self._process = self._address = None
         self._state, self._sent = None, None  # of the server: the scene, and the picture's planes
         self._mixing = threading.Lock()
@@ -59,11 +60,12 @@ class Session:
         self._thread.start()
         _open.add(self)
 
-    def show(self, content, meshes=None):
-        """Shows a scene from now on. `meshes` is (name of its file, gltf.Glb), written unless it is there."""
+    def show(self, content, words, meshes=None):
+        """Shows a scene from now on, of which messages speak in `words`. `meshes` is (name of its file, gltf.Glb),
+        written unless it is there."""
         with self._changed:
             self.is_final = False
-            self._wanted = (content, meshes)
+            self._wanted = (content, words, meshes)
             self._changed.notify()
 
     def close(self):
@@ -76,7 +78,7 @@ class Session:
         self._thread.join()
 
     def _tell(self, message):
-        self.message = own_words(message, self.folder)
+        self.message = self._words.of(message)
         self.version += 1
 
     def _work(self):
@@ -95,7 +97,8 @@ class Session:
         finally:
             self._end()
 
-    def _take(self, content, meshes):
+    def _take(self, content, words, meshes):
+        self._words = words
         if meshes is not None:
             self._write_meshes(*meshes)
         path = os.path.join(self.folder, SCENE_FILE)

@@ -8,9 +8,10 @@ import gpu
 from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix, Vector
 
-from . import cameras, meshes, preferences, program, scene as scenes, volumes
+from . import cameras, features, meshes, preferences, program, scene as scenes, units, volumes
 from .notes import Notes, Refusal
 from .session import Session
+from .words import Words
 
 SECONDS_BETWEEN_LOOKS = 0.02
 SECONDS_OF_READING = 0.008  # at a time, between two drawings of the view
@@ -34,7 +35,7 @@ def frame_of(depsgraph, region_size, view, through_camera, notes, pixel_size=1):
     """The Frame of a 3D view, whose matrices `view` (a RegionView3D) has. Through the camera its frame shows
     what a render does, housing and all."""
     scene = depsgraph.scene
-    to_metres = scenes.metres_of(scene)
+    to_metres = units.to_metres(scene)
     width, height = region_size
     if not through_camera or scene.camera is None:
         size = [max(side // pixel_size, 1) for side in region_size]
@@ -69,6 +70,7 @@ class Surroundings:
         self._unfinished = None              # the meshes.MeshFile that is being read
         self._known = {}                     # what it read of objects that do not change
         self._mesh_notes, self._notes, self._content = Notes(), Notes(), {}
+        self.words = Words()
 
     @property
     def notes(self):
@@ -88,8 +90,9 @@ class Surroundings:
         self._notes = Notes()
         plumes = volumes.Volumes(self._session.folder, self._notes,
                                  lambda source: volumes.advice_soon(self._program, source))
-        content = scenes.describe_water_and_lamps(depsgraph, self._session.folder, None, plumes,
-                                                  self._notes)
+        content, self.words = scenes.describe_water_and_lamps(depsgraph, self._session.folder, None, plumes,
+                                                              self._notes)
+        features.note_all(depsgraph, self._notes)
         content["render"] = self._render(depsgraph.scene)
         self._content = content
 
@@ -103,7 +106,7 @@ class Surroundings:
         if not self._unfinished.read_some(depsgraph, seconds):
             return
         made, self._unfinished = self._unfinished, None
-        made.add_all(depsgraph, scenes.metres_of(depsgraph.scene), None)
+        made.add_all(depsgraph, units.to_metres(depsgraph.scene), None)
         self._keys = made.keys
         names = {key[0] for key in made.keys}
         self._known = {name: corners for name, corners in self._known.items() if name in names}
@@ -113,7 +116,7 @@ class Surroundings:
         scene = depsgraph.scene
         places = {meshes.key_of(instance): instance.matrix_world.copy().freeze()
                   for instance in meshes.surfaces(depsgraph)}
-        settings = (scene.uwvdb.use_gloss, scene.unit_settings.scale_length, scene.uwvdb.bands)
+        settings = (scene.uwvdb.use_gloss, units.metres_per_unit(scene), scene.uwvdb.bands)
         are_others = (settings != self._settings or places.keys() != self._places.keys()
                       or any(map(depsgraph.id_type_updated, OF_SURFACES))
                       or any(isinstance(update.id, bpy.types.Object) and update.is_updated_geometry
@@ -126,7 +129,7 @@ class Surroundings:
             self._unfinished = meshes.MeshFile(self._mesh_notes, self._known)
             self.read_on(depsgraph)
         elif places != self._places and self._keys:
-            to_metres = scenes.metres_of(scene)
+            to_metres = units.to_metres(scene)
             self._name_meshes(scene, self._meshes[1].moved([to_metres @ places[key] for key in self._keys]))
         self._places, self._settings = places, settings
 
@@ -186,7 +189,8 @@ class Viewport:
             self._surroundings.read_on(depsgraph)
         elif self._is_new or frame.camera != self._shown:
             self._shown, self._is_new = frame.camera, False
-            self._session.show(self._surroundings.with_camera(frame.camera), self._surroundings.meshes)
+            self._session.show(self._surroundings.with_camera(frame.camera), self._surroundings.words,
+                               self._surroundings.meshes)
         picture = self._session.picture
         if picture is not None:
             if self._drawn is not picture:

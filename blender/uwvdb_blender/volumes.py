@@ -10,8 +10,9 @@ import numpy
 from mathutils import Matrix
 
 from . import bands as colours
-from . import emission, meshes, program
+from . import emission, meshes, program, units
 from .notes import Refusal
+from .words import Words
 
 class Source:
     """A file of an object's volume in this frame, a name that stands for all frames (for advice), and
@@ -22,7 +23,7 @@ class Source:
 
 
 def source_of(shown, frame):
-    """The Source of an object in a frame, None if it has no volume; Refusal if its file is not there."""
+    """The Source of an object in a frame, None if it has no volume then; Refusal if its file is not there."""
     if shown.type == "VOLUME":
         return _of_volume_object(shown)
     settings = meshes.domain_settings(shown) if shown.type == "MESH" else None
@@ -33,8 +34,10 @@ def _of_volume_object(shown):
     data = shown.data
     if not data.filepath:
         return None
-    data.grids.load()
-    path = data.grids.frame_filepath or bpy.path.abspath(data.filepath, library=data.library)
+    is_loaded, path = data.grids.load(), data.grids.frame_filepath
+    if is_loaded and not path:
+        return None  # The frame is outside a sequence that is clipped.
+    path = path or bpy.path.abspath(data.filepath, library=data.library)
     if not os.path.isfile(path):
         raise Refusal(f"volume '{shown.name}': there is no file {path}")
     return Source(path, _pattern(path) if data.is_sequence else path, False)
@@ -86,7 +89,7 @@ def _advice(source, look):
 def size_of(shown, scene):
     """The matrix that makes metres of the sizes in an object's file: a cache of a domain is as large
     there as in Blender's world."""
-    to_metres = Matrix.Scale(scene.unit_settings.scale_length, 4)
+    to_metres = units.to_metres(scene)
     return to_metres @ shown.matrix_world if shown.type == "VOLUME" else to_metres
 
 
@@ -118,23 +121,26 @@ class Volumes:
 
     def __init__(self, folder, notes, advise):
         self._folder, self._notes, self._advise = folder, notes, advise
-        self.entries = []
+        self.entries, self.objects = [], []  # of the section, and the names and files of their objects
 
     def add_all(self, depsgraph, to_metres):
         for instance in depsgraph.object_instances:
             shown = instance.object
-            if not instance.show_self:
+            if not instance.show_self or meshes.is_unseen(instance, depsgraph.view_layer):
                 continue
             try:
                 source = source_of(shown, depsgraph.scene.frame_current)
                 if source is not None:
                     self._add(shown, source, depsgraph.scene, to_metres @ instance.matrix_world)
             except Refusal as missing:
-                self._notes.add(f"{missing}; it is left out")
+                self._notes.add(f"{Words().why(missing)}; it is left out")
         if self.entries and depsgraph.scene.render.use_motion_blur:
             self._notes.add("volumes stand still while the shutter is open")
 
     def _add(self, shown, source, scene, matrix):
+        if meshes.axes_of(matrix) < 3:
+            self._notes.add(f"'{shown.name}' is left out: its scale is 0")
+            return
         # Under a name of its own: the file's place says nothing that Blender does not know better.
         # It differs from file to file, so that whoever reads the scene again sees that one has changed.
         state = f"{os.path.abspath(source.path)} {os.stat(source.path).st_mtime_ns}"
@@ -167,6 +173,7 @@ class Volumes:
             return
         with contextlib.suppress(FileExistsError):
             os.symlink(os.path.abspath(source.path), os.path.join(self._folder, link))
+        self.objects.append((shown.name, source.path))
         self.entries.append({"file": link, **content, "centering": "cell", "up": "y", **extra,
                              "transform": self._transform(shown, matrix @ of_file)})
 
@@ -179,7 +186,7 @@ class Volumes:
         domain = meshes.domain_settings(shown) if shown.type == "MESH" else None
         found = emission.of_object(shown, domain, {name.removesuffix(suffix) for name in names},
                                    colours.parse(scene.uwvdb.bands),
-                                   Matrix.Scale(scene.unit_settings.scale_length, 4), self._notes)
+                                   units.metres_per_unit(scene), self._notes)
         # The name of its lamp: letters, digits and hyphens.
         number = len(self.entries)
         return {grid + suffix: {**light, "name": re.sub("[^A-Za-z0-9-]", "-", f"volume{number}-{grid}")[:64]}

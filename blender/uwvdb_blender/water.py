@@ -32,7 +32,8 @@ def describe(scene, bands, to_metres):
         water["snow"] = {"number": settings.snow_number,
                          "diameter": [f"{settings.snow_least} mm", f"{settings.snow_greatest} mm"],
                          "exponent": settings.snow_exponent, "reflectance": settings.snow_reflectance,
-                         "drift": list(settings.snow_drift), "seed": settings.snow_seed,
+                         "drift": [speed * to_metres.median_scale for speed in settings.snow_drift],
+                         "seed": settings.snow_seed,
                          "mean": settings.snow_mean.lower()}
     render = scene.uwvdb
     if render.use_forward_scatter:

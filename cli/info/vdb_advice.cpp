@@ -251,8 +251,8 @@ void say_domain(const VdbInspection& inspection, VdbAdvice& advice) {
         const Vector3& h = *domain->voxel;
         if (glm::length(h - edge) > k_rounding * edge)
             advice.lines.push_back(fmt::format(
-                "The file states voxels of {:.4g} m, but the domain's sides are no whole number of "
-                "them: {} is taken from the cache's folder config, as Blender stretches them.",
+                "The file states voxels of {:.4g} m, which Blender stretches to fill the domain's "
+                "box: {} is taken from the cache's folder config.",
                 edge, sides_text(h)));
         return;
     }
@@ -323,7 +323,7 @@ void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
 /// The place that a volume has by the file's transform and what is advised.
 Affine placing(const VdbAdvice& advice) {
     return Affine::translation(advice.translate) * Affine::rotation_xyz_degrees(advice.rotate) *
-           Affine::scale(Vector3(advice.scale));
+           Affine::scale(advice.scale * advice.mirror);
 }
 
 double rounded(double value, double step) {
@@ -339,22 +339,56 @@ Vector3 angles_of(const Matrix3& rotation) {
     return Vector3(std::atan2(at(2, 1), at(2, 2)), y, std::atan2(at(1, 0), at(0, 0))) / k_degree;
 }
 
-/// Decides `rotate` and `translate`. `has_size`: the file's transform means something.
+/// A domain's axes as a rotation of a box that may be mirrored. Axes that are sheared have the
+/// nearest rotation, in the sum of squares.
+struct Turn {
+    Matrix3 rotation;
+    Vector3 mirror{1};
+    bool is_sheared = false;
+};
+
+Turn turn_of(const Matrix3& axes) {
+    // Newton's iteration for the orthogonal factor of the polar decomposition.
+    Turn turn{axes};
+    constexpr int k_steps = 60;
+    for (int step = 0; step < k_steps; ++step)
+        turn.rotation = 0.5 * (turn.rotation + glm::transpose(glm::inverse(turn.rotation)));
+    constexpr double k_rounding = 1e-4;  // of the file's floats
+    for (int axis = 0; axis < 3; ++axis)
+        turn.is_sheared |= glm::length(turn.rotation[axis] - axes[axis]) > k_rounding;
+    if (glm::determinant(turn.rotation) > 0) return turn;
+    // Any axis would do; this one leaves the smallest rotation, whose trace is the largest.
+    int mirrored = 0;
+    for (int axis = 1; axis < 3; ++axis)
+        if (turn.rotation[axis][axis] < turn.rotation[mirrored][mirrored]) mirrored = axis;
+    turn.mirror[mirrored] = -1;
+    turn.rotation[mirrored] *= -1;
+    return turn;
+}
+
+/// Decides `mirror`, `rotate` and `translate`. `has_size`: the file's transform means something.
 void say_place(const VdbInspection& inspection, bool has_size, VdbAdvice& advice) {
     const double side = advice.scale * longest_side(advice.bounds);
     if (const auto place = place_in_blender(inspection)) {
         constexpr double k_metres = 1e-6, k_degrees = 1e-4;  // of the file's floats
-        const Vector3 angles = angles_of(place->linear());
+        const Turn turn = turn_of(place->linear());
+        const Vector3 angles = angles_of(turn.rotation);
+        advice.mirror = turn.mirror;
         for (int axis = 0; axis < 3; ++axis) {
             advice.rotate[axis] = rounded(angles[axis], k_degrees) + 0.0;
             advice.translate[axis] = rounded(advice.scale * place->offset()[axis], k_metres) + 0.0;
         }
         const Vector3& t = place->offset();
         advice.lines.push_back(fmt::format(
-            "Its domain had its corner at ({:.4g}, {:.4g}, {:.4g}) in Blender{}, as the cache's "
+            "Its domain had its corner at ({:.4g}, {:.4g}, {:.4g}) in Blender{}{}, as the cache's "
             "folder config says: the block puts it there, beside what the same scene exports as "
             ".glb.",
-            t.x, -t.z, t.y, advice.rotate == Vector3(0) ? "" : " and was turned"));
+            t.x, -t.z, t.y, advice.rotate == Vector3(0) ? "" : " and was turned",
+            turn.mirror == Vector3(1) ? "" : " and mirrored"));
+        if (turn.is_sheared)
+            advice.lines.emplace_back(
+                "A parent that is scaled shears it in Blender, which no transform here does: the "
+                "block has the nearest rotation. Apply the parent's scale, and bake again.");
     } else if (!has_size && advice.bounds.min.y < 0) {
         const double step = std::pow(10, std::floor(std::log10(side)) - 3);
         advice.translate.y = std::ceil(-advice.scale * advice.bounds.min.y / step) * step;
@@ -732,9 +766,13 @@ void write_block(const VdbInspection& inspection, const std::filesystem::path& f
     const Vector3& r = advice.rotate;
     const std::string rotate =
         r == Vector3(0) ? "" : fmt::format("rotate: [{:.8g}, {:.8g}, {:.8g}], ", r.x, r.y, r.z);
-    yaml +=
-        fmt::format("    transform: {{scale: {:g}, {}translate: [{:.12g}, {:.12g}, {:.12g}]}}\n",
-                    advice.scale, rotate, t.x, t.y, t.z);
+    const Vector3 factors = advice.scale * advice.mirror;
+    const std::string scale =
+        advice.mirror == Vector3(1)
+            ? fmt::format("{:g}", advice.scale)
+            : fmt::format("[{:g}, {:g}, {:g}]", factors.x, factors.y, factors.z);
+    yaml += fmt::format("    transform: {{scale: {}, {}translate: [{:.12g}, {:.12g}, {:.12g}]}}\n",
+                        scale, rotate, t.x, t.y, t.z);
 }
 
 void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice& advice) {

@@ -18,6 +18,7 @@ struct VdbAdvice {
     LevelSets level_sets = LevelSets::refused;  // fog where these are level sets
     std::optional<double> voxel_size;  // to give, where the file's is known to be wrong [m]
     double scale = 1;                  // to apply, 1 where the file's size is plausible
+    Vector3 mirror{1};  // to apply with it: -1 along the axis in which Blender mirrors the domain
     Vector3 rotate{0};  // to apply: 0, or what the domain was turned by in Blender [degrees]
     /// To apply: 0, or where Blender has the domain, or what brings a faraway volume to the origin,
     /// or one without a size onto y = 0 [m].

@@ -141,6 +141,7 @@ Report report_on_advice(const VdbSurvey& survey) {
     const SceneProposal& view = advice.view.proposal;
     report.set({{"voxel_size", advice.voxel_size ? Json(*advice.voxel_size) : Json(nullptr)},
                 {"scale", advice.scale},
+                {"mirror", vector_json(advice.mirror)},
                 {"level_set", advice.level_sets == LevelSets::fog ? Json("fog") : Json(nullptr)},
                 {"rotate", vector_json(advice.rotate)},
                 {"fps", advice.fps ? Json(*advice.fps) : Json(nullptr)},

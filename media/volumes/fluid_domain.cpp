@@ -68,19 +68,15 @@ void read_box(const ConfigValues& values, FluidConfig& config) {
         if (!(sides[axis] > 0) || !std::isfinite(sides[axis])) return;
         axes[axis] = column / length;
     }
+    constexpr double k_flat = 1e-6;  // the file's floats do not tell a flatter one from none
+    if (!(std::abs(glm::determinant(axes)) > k_flat)) return;
     config.sides = sides;
     const Affine blender_from_object(
         Matrix3(sides.x / (high.x - low.x) * axes[0], sides.y / (high.y - low.y) * axes[1],
                 sides.z / (high.z - low.z) * axes[2]),
         reals_at(values, k_matrix + 12));
-    constexpr double k_rounding = 1e-5;  // of the file's floats
-    const bool is_rotation = std::abs(glm::dot(axes[0], axes[1])) < k_rounding &&
-                             std::abs(glm::dot(axes[1], axes[2])) < k_rounding &&
-                             std::abs(glm::dot(axes[2], axes[0])) < k_rounding &&
-                             glm::determinant(axes) > 0;
-    if (is_rotation)
-        config.blender_from_domain =
-            Affine(axes, from_origin(blender_from_object * at_origin_plus(low)));
+    config.blender_from_domain =
+        Affine(axes, from_origin(blender_from_object * at_origin_plus(low)));
 }
 
 }  // namespace
@@ -157,10 +153,9 @@ std::optional<FluidDomain> domain_of(const FluidConfig& config, const GridSummar
     domain.voxel = Vector3(domain.largest_voxel());
     domain.first =
         static_cast<double>(finer) * Vector3(config.first[0], config.first[1], config.first[2]);
-    // The box counts only if it is that of this file.
-    constexpr double k_rounding = 1e-3;
-    const double side = std::max({config.sides.x, config.sides.y, config.sides.z});
-    if (std::abs(side - domain.longest_side) <= k_rounding * domain.longest_side) {
+    // The solver knows the object's own scale, but not that of its parents, which the box has.
+    if (config.blender_from_domain) {
+        domain.longest_side = std::max({config.sides.x, config.sides.y, config.sides.z});
         domain.voxel = config.sides / voxels;
         domain.blender_from_domain = config.blender_from_domain;
     }

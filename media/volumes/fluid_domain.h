@@ -18,8 +18,9 @@ struct FluidConfig {
     std::array<std::int32_t, 3> domain{};      // of the whole domain
     std::array<std::int32_t, 3> first{};       // voxel of the domain at which the grids begin
     Vector3 sides{0};  // of the domain in Blender's world [m]; 0 if they are not stated
-    /// Blender's world from the domain's own axes, in metres from its corner; none for a domain
-    /// that is sheared or mirrored.
+    /// Blender's world from the domain's own axes, in metres from its corner; empty if it is not
+    /// stated. Its columns are unit vectors: not perpendicular for a domain that is sheared by its
+    /// parents, and left-handed for one that is mirrored.
     std::optional<Affine> blender_from_domain;
     double time = 0;  // that the solver has simulated, in its own unit of 0.4 s
 };

@@ -25,17 +25,49 @@ def places(passes):
 
 
 def test_point_light_is_watts_over_the_sphere():
-    floor_scene()
+    """Both are Blender's own, by its units of length, whatever their Unit Scale."""
+    scene = floor_scene()
     light("POINT", watts=200, location=(-0.5, 0.4, 2.5), color=(1, 0.5, 0.25))
     bpy.data.objects.remove(bpy.data.objects["Box"])
-    passes = render()
-    position, on_floor = places(passes)
-    away = numpy.array([-0.5, 0.4, 2.5]) - position
-    r = numpy.linalg.norm(away, axis=-1, keepdims=True)
-    wanted = 200 / (4 * math.pi) * away[..., 2:] / r**3 * numpy.array([1, 0.5, 0.25])
-    # The position is that of the pixel's centre, the light a mean over its samples.
-    close(passes["irradiance"], wanted, 2e-4, "irradiance", on_floor)
-    close(passes["Combined"][..., :3], wanted * 0.8 / math.pi, 2e-4, "radiance", on_floor)
+    for scene.unit_settings.scale_length in (1, 0.01):
+        passes = render()
+        position, on_floor = places(passes)
+        away = numpy.array([-0.5, 0.4, 2.5]) - position
+        r = numpy.linalg.norm(away, axis=-1, keepdims=True)
+        wanted = 200 / (4 * math.pi) * away[..., 2:] / r**3 * numpy.array([1, 0.5, 0.25])
+        # The position is that of the pixel's centre, the light a mean over its samples.
+        close(passes["irradiance"], wanted, 2e-4, "irradiance", on_floor)
+        close(passes["Combined"][..., :3], wanted * 0.8 / math.pi, 2e-4, "radiance", on_floor)
+
+
+def test_lights_that_would_take_light_away_are_left_out():
+    """Blender lets a light's power, and its nodes' strength, be negative."""
+    for kind in ("POINT", "SPOT", "AREA", "SUN"):
+        for make in (lambda lamp, node: setattr(lamp.data, "energy", -5),
+                     lambda lamp, node: setattr(node.inputs["Strength"], "default_value", -2)):
+            scene = floor_scene()
+            scene.world.uwvdb.use_surface = True
+            scene.render.resolution_x, scene.render.resolution_y = 24, 16
+            light("POINT", "Good", watts=200, location=(-1.5, 0.7, 2.0))
+            wanted = render()["Combined"]
+            bad = light(kind, "Bad", location=(0.5, 0, 2))
+            bad.data.use_nodes = True
+            make(bad, next(n for n in bad.data.node_tree.nodes if n.type == "EMISSION"))
+            close(render()["Combined"], wanted, 0, f"{kind} beside another light")
+            said = [note for note in notes() if "light 'Bad'" in note]
+            assert len(said) == 1 and "negative" in said[0], notes()
+
+
+def test_sizes_that_blender_permits():
+    """The widest spot, and a panel of no size, which is left out with a word."""
+    floor_scene()
+    light("SPOT", watts=300, location=(-1.5, 0.7, 2.5), spot_size=math.pi, spot_blend=0.4)
+    against_cycles("widest spot")
+    for settings in ({"shape": "SQUARE", "size": 0}, {"shape": "ELLIPSE", "size": 1, "size_y": 0}):
+        floor_scene()
+        light("AREA", "Nothing", location=(0, 0, 2), **settings)
+        render()
+        assert any("light 'Nothing': is left out: its Size is 0" in note for note in notes()), notes()
 
 
 def test_sun_is_watts_per_square_metre():

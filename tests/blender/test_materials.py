@@ -245,6 +245,16 @@ def test_emission():
     close(middle, [1.75, 1.0, 0.5], 1e-4, "emission")
 
 
+def test_negative_emission_is_named():
+    _, thing = facing_square()
+    bpy.data.objects.remove(bpy.data.objects["Light"])
+    made, _, _, node = material("Dark Lamp", (0.7, 0.4, 0.2), "ShaderNodeEmission")
+    node.inputs["Strength"].default_value = -1
+    thing.data.materials.append(made)
+    assert render()["Combined"][45, 45, :3].max() == 0
+    assert any("'Dark Lamp': takes no light away" in note for note in notes()), notes()
+
+
 def test_unknown_nodes_are_named():
     _, thing = facing_square()
     made, nodes, links, node = principled()

@@ -150,7 +150,7 @@ def test_what_cannot_be_shown_is_named_once():
     light("SUN")
     render()
     told = " | ".join(notes())
-    for words in ("background gives no light", "no Glass BSDF shader", "needs the place where the water"):
+    for words in ("background gives no light", "'Glass': lets all light through", "needs the place where the water"):
         assert words in told, (words, told)
 
 

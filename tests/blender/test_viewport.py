@@ -57,7 +57,8 @@ class Shown:
     def ask(self, view, through_camera=False):
         notes = sys.modules["uwvdb_blender.notes"].Notes()
         frame = viewport().frame_of(self.depsgraph, view.size, view, through_camera, notes)
-        self.session.show(self.surroundings.with_camera(frame.camera), self.surroundings.meshes)
+        self.session.show(self.surroundings.with_camera(frame.camera), self.surroundings.words,
+                          self.surroundings.meshes)
         return frame, notes.texts
 
     def final(self):
@@ -218,7 +219,7 @@ def test_an_error_is_told_and_goes_when_it_is_mended():
             assert time.monotonic() < end
             time.sleep(0.01)
         print(f"    {shown.session.message}")
-        assert shown.session.message.startswith("water.snow") and "\n" not in shown.session.message
+        assert shown.session.message.startswith("World > Water > Marine Snow") and "\n" not in shown.session.message
         scene.world.uwvdb.snow_least = 1
         shown.update()
         shown.ask(View((0, -3, 0.4)))

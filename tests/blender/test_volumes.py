@@ -26,6 +26,21 @@ def test_volume_object_turned_and_scaled():
     shadows_agree("turned")
 
 
+def test_instances_of_a_volume_object():
+    """Two of them, by empties that show its collection, each in its own place and size."""
+    scene = wall_scene()
+    thing = volume_object(PLUME, location=(-1, 0, -0.5), scale=(0.5, 0.5, 0.5))
+    absorbing(thing, 3)
+    thing.data.render.space = "WORLD"  # the density of water does not change with an object's size
+    group = bpy.data.collections.new("Plumes")
+    scene.collection.objects.unlink(thing)
+    group.objects.link(thing)
+    for x, size in ((-1, 0.7), (1.5, 1.1)):
+        holder = add(f"Holder{x}", None, (x, 7, 0), (0.2, 0.1, x), (size, size, size))
+        holder.instance_type, holder.instance_collection = "COLLECTION", group
+    shadows_agree("instances")
+
+
 def test_advice_is_the_default():
     """Without concentrations of its own a plume is neither invisible nor black, and a note says what
     they are; a smaller one is denser."""

@@ -229,13 +229,79 @@ TEST_F(VdbAdviceTest, TheDomainLiesWhereBlenderHasIt) {
     const std::filesystem::path file = dir_ / "data/fluid_data_0012.vdb";
     test::write_fixture(file, {smoke}, "");
     const VdbAdvice advice = advise_on_vdb(inspect_vdb(file, "here"), "b.vdb");
-    EXPECT_TRUE(says(advice, "are no whole number of them: 0.035 x 0.03529 x 0.03542 m"));
+    EXPECT_TRUE(says(advice, "to fill the domain's box: 0.035 x 0.03529 x 0.03542 m"));
     EXPECT_LT(glm::length(advice.rotate - Vector3(0, 30, 0)), 1e-3);
     EXPECT_LT(distance(advice.bounds.center(), Point3{0.3, 1.1, 0.5}), 1e-4);
     EXPECT_NE(advice.volumes.find("rotate: [0, 30, 0], translate: ["), std::string::npos);
     std::filesystem::remove(dir_ / "config/config_0012.uni");
     const VdbAdvice unknown = advise_on_vdb(inspect_vdb(file, "here"), "b.vdb");
     EXPECT_TRUE(says(unknown, "unless its Dimensions are 1.417 x 1.204 x 1.7 m"));
+}
+
+// The corners of smoke in one part of a domain are where the objects' own matrices put them,
+// whatever its parents do; the solver, and so the file, knows the scale of the object itself alone.
+TEST_F(VdbAdviceTest, ADomainIsWhereItsParentsPutIt) {
+    const auto scaled = [](const Vector3& scale) { return Affine::scale(scale); };
+    const auto moved = [](const Vector3& degrees, const Vector3& offset) {
+        return Affine::translation(offset) * Affine::rotation_xyz_degrees(degrees);
+    };
+    struct Case {
+        const char* what;
+        Affine parents;
+    };
+    const Affine turned = moved({10, -20, 35}, {0.2, -0.3, 0.4});
+    const std::array<Case, 8> cases{{
+        {"none", Affine()},
+        {"turned", turned},
+        {"scaled", scaled(Vector3(1.7))},
+        {"scaled by axis", scaled({1.5, 0.6, 2})},
+        {"turned, and scaled", turned * scaled({1.5, 0.6, 2})},
+        {"a chain",
+         turned * scaled(Vector3(0.5)) * moved({0, 0, 70}, {1, 0, 0}) * scaled({2, 1, 3})},
+        {"mirrored", scaled({1, 1, -1})},
+        {"mirrored, and turned", turned * scaled({-1.2, 1, 1.4})},
+    }};
+    const Vector3 own_scale(0.7, 0.6, 0.85);  // of a cube of 2
+    const Affine own = Affine::translation({0.3, -0.5, 1.1}) * Affine::scale(own_scale);
+    const std::array<std::int32_t, 3> count{40, 34, 48};
+    std::filesystem::create_directories(dir_ / "data");
+    std::filesystem::create_directories(dir_ / "config");
+    const std::filesystem::path file = dir_ / "data/fluid_data_0012.vdb";
+    test::VdbFixture smoke = cube("density", 1.7 / 48);
+    smoke.boxes = {{{4, 0, 0}, {11, 16, 11}, 1}};
+    smoke.blender_metadata = true;
+    smoke.base_resolution = {count[0], count[1], count[2]};
+    test::write_fixture(file, {smoke}, "");
+    for (const Case& c : cases) {
+        const Affine blender_from_object = c.parents * own;
+        std::ofstream(dir_ / "config/config_0012.uni", std::ios::binary)
+            << test::fluid_config(count, Vector3(-1), Vector3(1), blender_from_object);
+        const VdbAdvice advice = advise_on_vdb(inspect_vdb(file, "here"), "b.vdb");
+        EXPECT_TRUE(says(advice, "Its domain had its corner at")) << c.what;
+        EXPECT_FALSE(says(advice, "does not record")) << c.what;
+        EXPECT_FALSE(says(advice, "shears")) << c.what;
+        Bounds wanted;
+        for (const double x : {4.0, 12.0})
+            for (const double y : {0.0, 17.0})
+                for (const double z : {0.0, 12.0}) {
+                    const Point3 corner{2 * x / count[0] - 1, 2 * y / count[1] - 1,
+                                        2 * z / count[2] - 1};
+                    const Point3 at = blender_from_object * corner;
+                    wanted.extend(Point3{at.x, at.z, -at.y});
+                }
+        // Degrees to 1e-4 and metres to 1e-6, as the block has them.
+        EXPECT_LT(distance(advice.bounds.min, wanted.min), 1e-5) << c.what;
+        EXPECT_LT(distance(advice.bounds.max, wanted.max), 1e-5) << c.what;
+        EXPECT_EQ(advice.volumes.find("scale: [") != std::string::npos, c.parents.determinant() < 0)
+            << c.what;
+    }
+    // A parent that is scaled by axis shears what is turned in it: that is said.
+    std::ofstream(dir_ / "config/config_0012.uni", std::ios::binary)
+        << test::fluid_config(count, Vector3(-1), Vector3(1),
+                              scaled({1.5, 0.6, 2}) * moved({0, 0, 30}, Vector3(0)) * own);
+    const VdbAdvice sheared = advise_on_vdb(inspect_vdb(file, "here"), "b.vdb");
+    EXPECT_TRUE(says(sheared, "shears it in Blender"));
+    EXPECT_TRUE(says(sheared, "Its domain had its corner at"));
 }
 
 TEST_F(VdbAdviceTest, AFullDomainMayBeAnAdaptiveOne) {

@@ -1,9 +1,39 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 #include <string>
 
+#include "core/base/vector_math.h"
+
 namespace uw::test {
+
+/// A configuration of a domain that is not adaptive: the box from `low` to `high` in its object's
+/// own axes, and that object in Blender's world, as Blender writes them but for the compression,
+/// which readers of gzip do without.
+inline std::string fluid_config(const std::array<std::int32_t, 3>& resolution, const Vector3& low,
+                                const Vector3& high, const Affine& blender_from_object) {
+    std::array<std::int32_t, 50> values{};
+    const auto put = [&](std::size_t first, const Vector3& v) {
+        for (int axis = 0; axis < 3; ++axis)
+            values.at(first + static_cast<std::size_t>(axis)) =
+                std::bit_cast<std::int32_t>(static_cast<float>(v[axis]));
+    };
+    for (const std::size_t first : {1U, 37U, 43U})
+        std::ranges::copy(resolution, values.begin() + static_cast<std::ptrdiff_t>(first));
+    put(6, low);
+    put(9, high);
+    for (int axis = 0; axis < 3; ++axis)
+        put(21 + 4 * static_cast<std::size_t>(axis), blender_from_object.linear()[axis]);
+    put(33, blender_from_object.offset());
+    std::string bytes;
+    for (const std::int32_t value : values)
+        for (int shift = 0; shift < 32; shift += 8)
+            bytes.push_back(static_cast<char>(static_cast<std::uint32_t>(value) >> shift & 0xffU));
+    return bytes;
+}
 
 /// config_0002.uni of a cache that Blender 3.4.1 baked with Adaptive Domain: a domain of 2.4 x 1.8
 /// x 2 m with 48 divisions, its lowest corner at (-0.9, -1.1, 0) in Blender's world, a source of
