@@ -1,6 +1,8 @@
 """What of Blender a render leaves out, in one table: each feature that a scene uses is said once. What becomes of nodes
 is said where they are read: materials.py, lamps.py, emission.py."""
 
+import itertools
+
 import numpy
 from mathutils import Vector
 
@@ -14,16 +16,18 @@ NAMES_SAID = 3  # of the objects that have a feature
 
 
 class Scene:
-    """What the table is asked about. `camera` is an evaluated object or None, `moments` a Motion or None."""
+    """What the table is asked about. `clipping` is the camera's evaluated object, or None where it takes too long to
+    look at clipping distances; `moments` is a Motion or None."""
 
-    def __init__(self, depsgraph, camera, moments):
+    def __init__(self, depsgraph, clipping, moments):
         self.scene, self.layer = depsgraph.scene, depsgraph.view_layer
-        self.camera, self.moments = camera, moments
+        self.clipping, self.moments = clipping, moments
 
 
 class Feature:
-    """`of` is the kind of what has it; `is_used(thing, scene)` whether that uses it, for objects with the object that
-    shows it as well; `says` what is said, after the names of objects."""
+    """`of` is the kind of what has it: objects are lights, surfaces, plumes, or shown as one of these two.
+    `is_used(thing, scene)` is whether that uses it, for objects with the object that shows it as well; `says` is what
+    is said, after the names of objects."""
 
     def __init__(self, of, says, is_used):
         self.of, self.says, self.is_used = of, says, is_used
@@ -41,16 +45,12 @@ def is_portal(light):
     return light.type == "AREA" and cycles(light, "is_portal", False)
 
 
-def _is_domain(shown):
-    return shown.type == "MESH" and domain_settings(shown) is not None
-
-
-def _is_surface(shown):
-    return shown.type in SURFACES and not _is_domain(shown)
-
-
-def _is_plume(shown):
-    return shown.type == "VOLUME" or _is_domain(shown)
+def _kinds_of(shown):
+    if shown.type == "LIGHT":
+        return ("light",)
+    if shown.type == "VOLUME" or shown.type == "MESH" and domain_settings(shown) is not None:
+        return ("object", "shown", "plume")
+    return ("object", "shown", "surface") if shown.type in SURFACES else ("object",)
 
 
 def _background(world):
@@ -86,7 +86,7 @@ def _other_passes(layer):
 
 def _is_beyond_clipping(shown, scene):
     """Whether a surface reaches beyond the camera's Clip End, or is nearer than its Clip Start."""
-    camera = scene.camera
+    camera = scene.clipping
     if camera is None or camera.type != "CAMERA":
         return False
     data, view = camera.data, camera.matrix_world.normalized().inverted()
@@ -104,40 +104,36 @@ def _is_beyond_clipping(shown, scene):
 
 
 TABLE = (
-    # Objects that are shown as surfaces or plumes.
-    Feature("object", "not visible to cameras: left out, and so is its shadow",
-            lambda o, by, s: (_is_surface(o) or _is_plume(o)) and not o.visible_camera),
-    Feature("object", "in a collection that is Indirect Only: left out, and so are its shadow and its light",
-            lambda o, by, s: (_is_surface(o) or _is_plume(o)) and o.visible_camera
-            and of_collection(by, "indirect_only_get", s.layer)),
-    Feature("object", "shown like any other: holdouts, of objects and of collections, are left out",
-            lambda o, by, s: (_is_surface(o) or _is_plume(o))
-            and (o.is_holdout or of_collection(by, "holdout_get", s.layer))),
-    Feature("object", "shown like any other: shadow catchers are left out",
-            lambda o, by, s: _is_surface(o) and o.is_shadow_catcher),
-    Feature("object", "casts a shadow here, although its Ray Visibility has none",
-            lambda o, by, s: (_is_surface(o) or _is_plume(o)) and not o.visible_shadow),
-    Feature("object", "seen by all light: Ray Visibility has an effect here for cameras alone",
-            lambda o, by, s: (_is_surface(o) or _is_plume(o)) and not all(getattr(o, rays) for rays in RAYS)),
-    Feature("object", "deforms, which motion blur and the Vector pass leave out: they have what whole objects do",
-            lambda o, by, s: _is_surface(o) and s.moments is not None and o.name_full in s.moments.deforming),
-    Feature("object", "blurred as it moves, although its own Motion Blur is off",
+    # What is shown, as surfaces or plumes.
+    Feature("shown", "not visible to cameras: left out, and so is its shadow", lambda o, by, s: not o.visible_camera),
+    Feature("shown", "in a collection that is Indirect Only: left out, and so are its shadow and its light",
+            lambda o, by, s: o.visible_camera and of_collection(by, "indirect_only_get", s.layer)),
+    Feature("shown", "shown like any other: holdouts, of objects and of collections, are left out",
+            lambda o, by, s: o.is_holdout or of_collection(by, "holdout_get", s.layer)),
+    Feature("surface", "shown like any other: shadow catchers are left out", lambda o, by, s: o.is_shadow_catcher),
+    Feature("shown", "casts a shadow here, although its Ray Visibility has none",
+            lambda o, by, s: not o.visible_shadow),
+    Feature("shown", "seen by all light: Ray Visibility has an effect here for cameras alone",
+            lambda o, by, s: not all(getattr(o, rays) for rays in RAYS)),
+    Feature("surface", "deforms, which motion blur and the Vector pass leave out: they have what whole objects do",
+            lambda o, by, s: s.moments is not None and o.name_full in s.moments.deforming),
+    Feature("shown", "blurred as it moves, although its own Motion Blur is off",
             lambda o, by, s: s.scene.render.use_motion_blur and not cycles(o, "use_motion_blur", True)),
-    Feature("object", "not culled: Camera Cull and Distance Cull are left out",
+    Feature("shown", "not culled: Camera Cull and Distance Cull are left out",
             lambda o, by, s: s.scene.render.use_simplify and any(
                 cycles(s.scene, f"use_{kind}_cull", False) and cycles(o, f"use_{kind}_cull", False)
                 for kind in ("camera", "distance"))),
-    Feature("object", "reaches beyond the camera's Clip Start or End, which have no effect here",
-            lambda o, by, s: _is_surface(o) and _is_beyond_clipping(o, s)),
+    Feature("surface", "reaches beyond the camera's Clip Start or End, which have no effect here",
+            lambda o, by, s: _is_beyond_clipping(o, s)),
     # Objects of other kinds.
     Feature("object", "left out: hair curves and point clouds are not shown", lambda o, by, s: o.type in UNKNOWN),
     Feature("object", "drawn by Blender over the picture, without water",
             lambda o, by, s: o.type in ("GPENCIL", "GREASEPENCIL")),
     Feature("object", "shown without the hair of its particle systems",
             lambda o, by, s: any(p.settings.render_type == "PATH" for p in o.particle_systems)),
-    Feature("object", "left out: it has no file; volumes that Geometry Nodes or modifiers make are not shown",
+    Feature("plume", "left out: it has no file; volumes that Geometry Nodes or modifiers make are not shown",
             lambda o, by, s: o.type == "VOLUME" and not o.data.filepath),
-    Feature("object", "shown as its file has it: modifiers of volumes are left out",
+    Feature("plume", "shown as its file has it: modifiers of volumes are left out",
             lambda o, by, s: o.type == "VOLUME" and o.data.filepath and len(o.modifiers) > 0),
     # Lights.
     Feature("light", "left out: portals give no light of their own", lambda o, by, s: is_portal(o.data)),
@@ -181,9 +177,14 @@ TABLE = (
 )
 
 
-def note_all(depsgraph, notes, camera=None, moments=None):
-    """Adds a note for each feature of the table that the evaluated scene uses."""
-    scene = Scene(depsgraph, camera, moments)
+OF_KIND = {kind: [feature for feature in TABLE if feature.of == kind]
+           for kind in ("light", "object", "shown", "surface", "plume")}
+
+
+def note_all(depsgraph, notes, camera, moments, is_view=False):
+    """Adds a note for each feature of the table that the evaluated scene uses. `camera` is an evaluated object or None,
+    `moments` a Motion or None; a view, which is described again and again, does not look at clipping distances."""
+    scene = Scene(depsgraph, None if is_view else camera, moments)
     things = {"scene": scene.scene, "layer": scene.layer, "world": scene.scene.world,
               "camera": camera.data if camera is not None and camera.type == "CAMERA" else None}
     for feature in TABLE:
@@ -197,9 +198,8 @@ def note_all(depsgraph, notes, camera=None, moments=None):
         if key in seen or not (instance.show_self or instance.show_particles):
             continue
         seen.add(key)
-        kind = "light" if shown.type == "LIGHT" else "object"
-        for feature in TABLE:
-            if feature.of == kind and feature.is_used(shown, shower, scene):
+        for feature in itertools.chain.from_iterable(map(OF_KIND.__getitem__, _kinds_of(shown))):
+            if feature.is_used(shown, shower, scene):
                 known = names.setdefault(feature, [])
                 if shown.name not in known:
                     known.append(shown.name)

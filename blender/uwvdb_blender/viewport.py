@@ -92,7 +92,8 @@ class Surroundings:
                                  lambda source: volumes.advice_soon(self._program, source))
         content, self.words = scenes.describe_water_and_lamps(depsgraph, self._session.folder, None, plumes,
                                                               self._notes)
-        features.note_all(depsgraph, self._notes)
+        camera = depsgraph.scene.camera
+        features.note_all(depsgraph, self._notes, camera and camera.evaluated_get(depsgraph), None, is_view=True)
         content["render"] = self._render(depsgraph.scene)
         self._content = content
 

@@ -9,6 +9,9 @@ from support import *
 PLUME = ROOT / "assets/grids/plume128_blosc_half_0030.vdb"
 
 
+OF_SCENE = ("scene", "layer", "world", "camera")
+
+
 def module():
     return sys.modules["uwvdb_blender.features"]
 
@@ -187,12 +190,12 @@ def test_each_is_said_once():
         feature, stand_in = row_of(words), provoke()
         if stand_in is not None:
             about = module().Scene(bpy.context.evaluated_depsgraph_get(), None, None)
-            whom = (stand_in, stand_in) if feature.of in ("object", "light") else (stand_in,)
+            whom = (stand_in,) if feature.of in OF_SCENE else (stand_in, stand_in)
             assert feature.is_used(*whom, about), words
             continue
         render(suffix="_L" if scene.render.use_multiview else "")
         assert len(said()) == 1 and feature.says in said()[0], (words, said())
-        if feature.of in ("object", "light"):
+        if feature.of not in OF_SCENE:
             assert said()[0].removeprefix("light ").startswith("'"), said()
 
 
