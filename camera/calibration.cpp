@@ -122,7 +122,8 @@ std::string_view title_of(CalibrationFormat format) {
 
 Calibration read_calibration(const std::filesystem::path& file, const std::string& camera) {
     const std::string origin = printable(file.string(), 300);
-    const std::string text = read_text_file(file, origin, YamlLimits{}.bytes, "calibration");
+    const std::string text =
+        read_text_file(file, origin, YamlLimits{}.bytes, "calibration", Pipes::read);
     Calibration result = looks_like_colmap(text) ? read_colmap(text, origin, camera)
                                                  : read_yaml(text, origin, camera);
     if (result.cameras.empty()) {

@@ -13,6 +13,7 @@
 #include "camera/camera.h"
 #include "cli/console.h"
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/json.h"
 #include "core/base/text.h"
 #include "core/base/vector_math.h"
@@ -56,7 +57,7 @@ CalibrationFormat format_called(const std::string& word) {
 
 Options calibration_options(CalibrationArguments& a) {
     Options options;
-    options.path("FILE", "", a.file, "a calibration, or a scene").required = true;
+    options.input("FILE", "", a.file, "a calibration, or a scene").required = true;
     options.text("--camera", "NAME", a.camera,
                  "which of several in the file: cam0, or COLMAP's number");
     Option& to = options.parsed(
@@ -66,7 +67,7 @@ Options calibration_options(CalibrationArguments& a) {
     to.value = Option::Value::word;
     for (const CalibrationFormat format : calibration_formats())
         to.words.emplace_back(word_of(format));
-    options.path("-o,--output", "FILE", a.output, "the file to write").needs = "--to";
+    options.output("-o,--output", "FILE", a.output, "the file to write").needs = "--to";
     options.number("--wavelength", "NM", a.wavelength, k_shortest_dispersion_nm,
                    k_longest_dispersion_nm,
                    "of light in nm, whose indices a scene's port has; default: the band "
@@ -290,11 +291,9 @@ namespace {
 /// Whether a file declares itself a scene: some line begins with "uwvdb:". A file that cannot be
 /// read is left to the reader.
 bool is_scene(const std::filesystem::path& file) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(file, error)) return false;
     constexpr std::streamsize k_look = 1 << 16;
     std::string text(k_look, '\0');
-    std::ifstream stream(file, std::ios::binary);
+    std::ifstream stream = open_own_file(file);
     stream.read(text.data(), k_look);
     text.resize(static_cast<std::size_t>(stream.gcount()));
     return text.starts_with("uwvdb:") || text.find("\nuwvdb:") != std::string::npos;
@@ -319,11 +318,6 @@ std::filesystem::path plain_name(const std::filesystem::path& path) {
     return name.replace_filename(path.stem().string() + "-plain" + path.extension().string());
 }
 
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-    std::error_code error;
-    return std::filesystem::equivalent(a, b, error);
-}
-
 void run_calibration(const CalibrationArguments& a) {
     if (a.json && a.format && a.output.empty())
         throw UsageError(
@@ -343,17 +337,14 @@ void run_calibration(const CalibrationArguments& a) {
         const std::string text = write_calibration(*a.format, calibration.desc);
         if (a.output.empty()) return print_output(text);
         const bool plain = *a.format == CalibrationFormat::colmap && calibration.desc.port;
-        for (const auto& path : {a.output, plain ? plain_name(a.output) : a.output})
-            if (same_file(path, a.file))
-                throw UsageError(
-                    fmt::format("{}: would replace the calibration being read; give another name",
-                                path.string()));
-        write_text(a.output, text);
+        TextFiles files;  // both, or neither
+        files.add(a.output, text);
         if (plain) {
             CameraDesc bare = calibration.desc;
             bare.port.reset();
-            write_text(plain_name(a.output), write_calibration(*a.format, bare));
+            files.add(plain_name(a.output), write_calibration(*a.format, bare));
         }
+        files.commit();
     }
     print_output(
         report_on_calibration(survey_calibration(a.file, calibration, bands_nm)).printed(a.json));

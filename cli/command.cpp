@@ -96,12 +96,19 @@ Option& Options::text(std::string names, std::string value_name, std::string& va
         [&variable](const std::string& text) { variable = text; }, std::move(help));
 }
 
-Option& Options::path(std::string names, std::string value_name, std::filesystem::path& variable,
-                      std::string help) {
+Option& Options::input(std::string names, std::string value_name, std::filesystem::path& variable,
+                       std::string help) {
     Option& option = parsed(
         std::move(names), std::move(value_name),
         [&variable](const std::string& text) { variable = text; }, std::move(help));
-    option.value = Option::Value::path;
+    option.value = Option::Value::input;
+    return option;
+}
+
+Option& Options::output(std::string names, std::string value_name, std::filesystem::path& variable,
+                        std::string help) {
+    Option& option = input(std::move(names), std::move(value_name), variable, std::move(help));
+    option.value = Option::Value::output;
     return option;
 }
 

@@ -42,7 +42,8 @@ struct Option {
     enum class Value {
         none,      // a flag
         text,      // anything
-        path,      // a file or the beginning of a file's name
+        input,     // a file to be read
+        output,    // a file to be written, or the beginning of a file's name
         word,      // one of `words`
         word_list  // some of `words`, separated by commas
     };
@@ -60,6 +61,7 @@ struct Option {
 
     bool is_positional() const { return !names.starts_with('-'); }
     bool is_flag() const { return value == Value::none; }
+    bool is_path() const { return value == Value::input || value == Value::output; }
     /// The long name, or that of a positional argument, for messages.
     std::string name() const;
 };
@@ -74,9 +76,12 @@ class Options {
     /// Any text.
     Option& text(std::string names, std::string value_name, std::string& variable,
                  std::string help);
-    /// The name of a file.
-    Option& path(std::string names, std::string value_name, std::filesystem::path& variable,
-                 std::string help);
+    /// The name of a file that is read.
+    Option& input(std::string names, std::string value_name, std::filesystem::path& variable,
+                  std::string help);
+    /// The name of a file that is written, or of a folder of such files.
+    Option& output(std::string names, std::string value_name, std::filesystem::path& variable,
+                   std::string help);
     /// A whole number within [low, high].
     Option& integer(std::string names, std::string value_name, std::optional<int>& variable,
                     int low, int high, std::string help);

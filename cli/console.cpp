@@ -51,6 +51,11 @@ void TextFiles::commit(bool quiet) {
     files_.clear();
 }
 
+void check_outputs(std::initializer_list<std::filesystem::path> outputs) {
+    for (const std::filesystem::path& file : outputs)
+        if (!file.empty()) const AtomicFile probe(file);
+}
+
 void write_text(const std::filesystem::path& output, const std::string& content, bool quiet) {
     if (output.empty()) {
         print_output(content);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -41,6 +42,11 @@ class TextFiles {
     };
     std::vector<Entry> files_;
 };
+
+/// Refuses outputs that cannot be written, or that would replace a file that has been read: to be
+/// called after the inputs are known and before the work. Empty names are passed over. Throws
+/// IoError.
+void check_outputs(std::initializer_list<std::filesystem::path> outputs);
 
 /// Writes `content` to the file of option -o, or to standard output if its name is empty. Throws
 /// IoError.

@@ -92,7 +92,7 @@ Exit codes: 0 done, 1 internal fault, 2 wrong usage, 4 cannot read the scene, or
 
 Options edit_options(EditArguments& a) {
     Options options;
-    options.path("SCENE", "", a.scene, "the scene file").required = true;
+    options.input("SCENE", "", a.scene, "the scene file").required = true;
     options.integer("--port", "N", a.port, 0, 65535, "listen there; default 0: any free port");
     options.flag("--no-browser", a.no_browser, "print the address only");
     options

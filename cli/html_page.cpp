@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "cli/report.h"
+#include "core/base/input_files.h"
 #include "core/image/image_file.h"
 
 namespace uw {
@@ -90,7 +91,7 @@ std::string ReportTable::html() const {
 std::string HtmlPictures::figure(const Preview& picture, const std::string& caption) const {
     const std::filesystem::path file = folder_.path() / "picture.png";
     write_png(file, picture, {});
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_own_file(file);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     return fmt::format(
         "<figure><img width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,{}\">"

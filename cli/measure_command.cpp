@@ -47,12 +47,12 @@ struct MeasureArguments {
 
 Options measure_options(MeasureArguments& a) {
     Options options;
-    options.path("SCENE", "", a.scene, "scene file with sensors").required = true;
+    options.input("SCENE", "", a.scene, "scene file with sensors").required = true;
     options.set(a.overrides);
     options.integer("--rays", "N", a.rays, 16, 1 << 24,
                     "rays from each point; the standard error falls with their square root");
-    options.path("--csv", "FILE", a.csv, "write all readings as a table");
-    options.path("--svg", "FILE", a.svg, "plot the irradiance along lines of sensors");
+    options.output("--csv", "FILE", a.csv, "write all readings as a table");
+    options.output("--svg", "FILE", a.svg, "plot the irradiance along lines of sensors");
     options.flag("--json", a.json, "print everything as JSON instead of tables");
     options.threads(a.threads);
     options.messages(a.quiet, a.progress);
@@ -278,6 +278,7 @@ void run_measure(const MeasureArguments& a) {
         throw InputError(fmt::format(
             "{}: sensors: there are none; add sensors: [{{name: station, position: [0, -5, 0]}}]",
             all.file.filename().string()));
+    check_outputs({a.csv, a.svg});
     Renderer renderer;
     renderer.set_scene(scene_of_image(all, {}));
     const AssembledScene& scene = renderer.assemble();

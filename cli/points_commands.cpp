@@ -166,7 +166,7 @@ CoordinateTable read_coordinates(const std::filesystem::path& file,
                                  CoordinateTable::NameSets names) {
     constexpr std::size_t k_largest_file = std::size_t{1} << 30;
     const std::string subject = printable(file.string(), 300);
-    return {read_text_file(file, subject, k_largest_file, "table"), subject, names};
+    return {read_text_file(file, subject, k_largest_file, "table", Pipes::read), subject, names};
 }
 
 /// `uwvdb project` and `uwvdb rays` as typed.
@@ -220,10 +220,10 @@ Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read 
 
 Options points_options(PointsArguments& a, std::string table_name, std::string table_help) {
     Options options;
-    options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
-    options.path(std::move(table_name), "", a.table, std::move(table_help)).required = true;
-    options.path("-o,--output", "OUT.csv", a.output,
-                 "the table to write; default: standard output");
+    options.input("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
+    options.input(std::move(table_name), "", a.table, std::move(table_help)).required = true;
+    options.output("-o,--output", "OUT.csv", a.output,
+                   "the table to write; default: standard output");
     options.text("--camera", "NAME", a.camera, "which camera of a rig");
     options.set(a.overrides);
     options.number("--wavelength", "NM", a.wavelength, k_shortest_dispersion_nm,
@@ -267,6 +267,7 @@ void run_project(const PointsArguments& a) {
     const std::array<std::vector<std::string_view>, 1> names{{{"x", "y", "z"}}};
     const CoordinateTable points = read_coordinates(a.table, names);
     std::atomic<std::size_t> visible = 0, occluded = 0, outside = 0;
+    check_outputs({a.output});
     const std::string table = points.with_columns(
         {"pixel_x", "pixel_y", "path", "in_image", "visible"},
         [&](std::size_t row, std::string& text) {
@@ -296,6 +297,7 @@ void run_rays(const PointsArguments& a) {
     const std::array<std::vector<std::string_view>, 2> names{{{"pixel_x", "pixel_y"}, {"x", "y"}}};
     const CoordinateTable pixels = read_coordinates(a.table, names);
     std::atomic<std::size_t> outside = 0, without_ray = 0;
+    check_outputs({a.output});
     const std::string table = pixels.with_columns(
         {"origin_x", "origin_y", "origin_z", "direction_x", "direction_y", "direction_z"},
         [&](std::size_t row, std::string& text) {

@@ -59,9 +59,9 @@ std::string bash_case(const Command& command) {
         const std::vector<std::string> names = names_of(option);
         options.insert(options.end(), names.begin(), names.end());
         if (option.is_flag()) continue;
-        const char* const candidates = option.value == Value::path ? "compgen -f"
-                                       : option.words.empty()      ? ":"
-                                                                   : "compgen -W";
+        const char* const candidates = option.is_path()       ? "compgen -f"
+                                       : option.words.empty() ? ":"
+                                                              : "compgen -W";
         const std::string words =
             option.words.empty() ? "" : fmt::format(" '{}'", fmt::join(option.words, " "));
         cases += fmt::format(
@@ -107,8 +107,8 @@ std::string zsh_specification(const Option& option, int position) {
     const std::string value_name = replaced(option.value_name, ":", R"(\:)");
     const std::string action = !option.words.empty() && option.value == Value::word
                                    ? fmt::format("({})", fmt::join(option.words, " "))
-                               : option.value == Value::path ? "_files"
-                                                             : " ";
+                               : option.is_path() ? "_files"
+                                                  : " ";
     if (option.is_positional())
         return in_quotes(fmt::format("{}:{}:{}", position, option.names,
                                      option.words.empty() ? "_files" : action));
@@ -178,7 +178,7 @@ std::string fish_script(std::span<const Command> commands) {
             std::string line = begin;
             for (const std::string& name : names_of(option))
                 line += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
-            if (option.value == Value::path) line += " -r -F";
+            if (option.is_path()) line += " -r -F";
             if (option.value == Value::text) line += " -x";
             if (!words.empty()) line += " -x -a " + fish_quotes(words);
             script += line + " -d " + fish_quotes(option.help) + "\n";

@@ -119,10 +119,10 @@ Options water_options(WaterArguments& a) {
         "nm: 620,540,450 or first:last:step, instead of the water's");
     options.number("--band", "NM", a.band_nm, 0, 1e5,
                    "nm: the scattering function at this band only");
-    options.path("--csv", "PREFIX", a.csv,
-                 "write PREFIX-coefficients.csv and PREFIX-vsf.csv, with finer angles");
-    options.path("--svg", "FILE", a.svg,
-                 "plot coefficients over wavelength, and scattering over angle");
+    options.output("--csv", "PREFIX", a.csv,
+                   "write PREFIX-coefficients.csv and PREFIX-vsf.csv, with finer angles");
+    options.output("--svg", "FILE", a.svg,
+                   "plot coefficients over wavelength, and scattering over angle");
     options.flag("--json", a.json, "print everything as JSON instead of tables");
     return options;
 }
@@ -216,6 +216,7 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     WaterSurvey survey;
     read_subject(a, survey);
     replace_bands(a, survey);
+    check_outputs({a.svg});
     {
         Progress progress("particles", "", 1, ProgressForm::text);
         survey.table = tabulate_water(survey.water, survey.volumes,

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/text.h"
 
 namespace uw {
@@ -184,7 +185,7 @@ std::string dataset_text(const DatasetFile& file) {
 std::optional<DatasetFile> read_dataset_file(const fs::path& folder) {
     const fs::path name = folder / k_dataset_file;
     const std::string shown = printable(name.string(), 300);
-    std::ifstream in(name, std::ios::binary);
+    std::ifstream in = open_own_file(name);
     if (!in) {
         if (has_files(folder))
             throw UsageError(fmt::format(

@@ -28,7 +28,7 @@ class InputSummer {
         std::string sum;
     };
     std::map<std::filesystem::path, Known> known_;
-    MeshSideFiles side_files_;
+    SideFiles side_files_;
 };
 
 }  // namespace uw

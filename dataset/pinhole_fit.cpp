@@ -10,6 +10,7 @@
 
 #include "camera/calibration.h"
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/json.h"
 #include "core/paths/lattice_fit.h"
 #include "dataset/surface_points.h"
@@ -338,7 +339,7 @@ std::string pinhole_text(const PinholeFits& fits) {
 }
 
 PinholeFits read_pinholes(const std::filesystem::path& file, std::size_t cameras) {
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_own_file(file);
     if (!in) throw IoError(fmt::format("{}: cannot be read", file.string()));
     try {
         PinholeFits fits;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/output_files.h"
 
 namespace uw {
@@ -98,7 +99,7 @@ std::string sha256_of(std::string_view text) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_own_file(file);
     std::vector<char> part(1 << 16);
     Sha256 sum;
     while (in) {
@@ -147,7 +148,7 @@ void SetFiles::add_bytes(std::string role, std::string path, std::string_view by
 }
 
 void SetFiles::add_copy(std::string role, std::string path, const std::string& from) {
-    std::ifstream in(folder_ / from, std::ios::binary);
+    std::ifstream in = open_own_file(folder_ / from);
     const std::string bytes{std::istreambuf_iterator<char>(in), {}};
     if (!in) throw IoError(fmt::format("{}: cannot be read", (folder_ / from).string()));
     add_bytes(std::move(role), std::move(path), bytes);

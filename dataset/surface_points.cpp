@@ -9,6 +9,7 @@
 
 #include "camera/camera.h"
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/image/pixel_image.h"
 #include "render/image_scene.h"
 #include "render/view_matcher.h"
@@ -33,7 +34,7 @@ std::string points_csv(const std::vector<Landmark>& points) {
 }
 
 std::vector<Landmark> read_points(const std::filesystem::path& file) {
-    std::ifstream in(file);
+    std::ifstream in = open_own_file(file);
     if (!in) throw IoError(fmt::format("{}: cannot be read", file.string()));
     std::string columns;
     std::getline(in, columns);
@@ -140,7 +141,7 @@ std::string observations_csv(const std::vector<Observation>& observations) {
 }
 
 std::vector<Observation> read_observations(const std::filesystem::path& file) {
-    std::ifstream in(file);
+    std::ifstream in = open_own_file(file);
     if (!in) throw IoError(fmt::format("{}: cannot be read", file.string()));
     std::string columns;
     std::getline(in, columns);

@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/spectrum.h"
 #include "core/image/colour.h"
 #include "core/image/image_file.h"
@@ -162,7 +163,7 @@ std::string record_text(const DatasetDefinition& definition, const ViewRecord& r
 std::optional<ViewRecord> read_record(const std::filesystem::path& folder,
                                       const DatasetDefinition& definition, const std::string& sum,
                                       const View& view) {
-    std::ifstream in(folder / record_file(definition, view), std::ios::binary);
+    std::ifstream in = open_own_file(folder / record_file(definition, view));
     if (!in) return std::nullopt;
     try {
         const Json json = Json::parse(in);

@@ -1,11 +1,16 @@
 #include <OpenColorIO/OpenColorIO.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/image/aces.h"
 #include "core/image/colour_view.h"
@@ -32,51 +37,204 @@ std::string missing(const std::string& what, const std::string& word, int count,
     return text;
 }
 
-void tell_files(const OCIO::ConstTransformRcPtr& transform, const OCIO::Context& context,
-                const Check& check) {
-    if (const auto group = OCIO_DYNAMIC_POINTER_CAST<const OCIO::GroupTransform>(transform))
-        for (int i = 0; i < group->getNumTransforms(); ++i)
-            tell_files(group->getTransform(i), context, check);
-    const auto file = OCIO_DYNAMIC_POINTER_CAST<const OCIO::FileTransform>(transform);
-    if (!file) return;
-    std::string path;
-    try {
-        path = context.resolveFileLocation(file->getSrc());
-    } catch (const OCIO::Exception&) {
-        return;  // there is none, which matters only if the view needs it
+/// The looks in a list such as "+neutral, -grade".
+std::vector<std::string> looks_of(std::string_view list) {
+    std::vector<std::string> looks;
+    while (!list.empty()) {
+        const std::size_t end = list.find_first_of(",:|");
+        std::string look(list.substr(0, end));
+        list = end == std::string_view::npos ? std::string_view() : list.substr(end + 1);
+        constexpr const char* k_blanks = " \t";
+        look.erase(0, look.find_first_not_of(k_blanks));
+        look.erase(look.find_last_not_of(k_blanks) + 1);
+        if (!look.empty() && (look.front() == '+' || look.front() == '-')) look.erase(0, 1);
+        looks.push_back(std::move(look));
     }
-    check(path);
+    return looks;
 }
 
-/// Every file that any part of the config refers to.
-void tell_files(const OCIO::Config& config, const Check& check) {
-    const OCIO::ConstContextRcPtr shared = config.getCurrentContext();
-    const OCIO::Context& context = *shared;
-    const int spaces =
-        config.getNumColorSpaces(OCIO::SEARCH_REFERENCE_SPACE_ALL, OCIO::COLORSPACE_ALL);
-    for (int i = 0; i < spaces; ++i) {
-        const auto space = config.getColorSpace(config.getColorSpaceNameByIndex(
-            OCIO::SEARCH_REFERENCE_SPACE_ALL, OCIO::COLORSPACE_ALL, i));
-        if (!space) continue;
-        tell_files(space->getTransform(OCIO::COLORSPACE_DIR_TO_REFERENCE), context, check);
-        tell_files(space->getTransform(OCIO::COLORSPACE_DIR_FROM_REFERENCE), context, check);
+/// Follows every reference of a config before OpenColorIO does, whose recursion has no end where a
+/// part refers to itself, and whose work doubles with each part that refers to another one twice.
+class ConfigWalk {
+  public:
+    /// `check` is called with every file that any part of the config refers to.
+    ConfigWalk(const OCIO::Config& config, const Check& check)
+        : config_(config), shared_(config.getCurrentContext()), context_(*shared_), check_(check) {}
+
+    /// What is wrong, to follow the config's name; empty if nothing is. Passes on what `check`
+    /// throws.
+    std::string fault() {
+        try {
+            walk();
+        } catch (const Fault& fault) {
+            return fault.what;
+        }
+        return "";
     }
-    for (int i = 0; i < config.getNumLooks(); ++i) {
-        const auto look = config.getLook(config.getLookNameByIndex(i));
-        tell_files(look->getTransform(), context, check);
-        tell_files(look->getInverseTransform(), context, check);
+
+  private:
+    struct Fault {
+        std::string what;
+    };
+    /// What a part is made of, with all that it refers to.
+    struct Extent {
+        std::size_t steps = 0;
+        int height = 0;  // of the longest chain of references
+    };
+
+    void walk() {
+        const int spaces =
+            config_.getNumColorSpaces(OCIO::SEARCH_REFERENCE_SPACE_ALL, OCIO::COLORSPACE_ALL);
+        for (int i = 0; i < spaces; ++i)
+            take_space(config_.getColorSpaceNameByIndex(OCIO::SEARCH_REFERENCE_SPACE_ALL,
+                                                        OCIO::COLORSPACE_ALL, i));
+        for (int i = 0; i < config_.getNumLooks(); ++i) take_look(config_.getLookNameByIndex(i));
+        for (int i = 0; i < config_.getNumViewTransforms(); ++i)
+            take_view_transform(config_.getViewTransformNameByIndex(i));
+        for (int i = 0; i < config_.getNumNamedTransforms(OCIO::NAMEDTRANSFORM_ALL); ++i)
+            take_named(config_.getNamedTransformNameByIndex(OCIO::NAMEDTRANSFORM_ALL, i));
+        for (int d = 0; d < config_.getNumDisplaysAll(); ++d) {
+            const std::string display = config_.getDisplayAll(d);
+            for (const OCIO::ViewType type : {OCIO::VIEW_DISPLAY_DEFINED, OCIO::VIEW_SHARED})
+                for (int v = 0; v < config_.getNumViews(type, display.c_str()); ++v)
+                    take_view(display, config_.getView(type, display.c_str(), v));
+        }
     }
-    for (int i = 0; i < config.getNumViewTransforms(); ++i) {
-        const auto view = config.getViewTransform(config.getViewTransformNameByIndex(i));
-        tell_files(view->getTransform(OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE), context, check);
-        tell_files(view->getTransform(OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE), context, check);
+
+    /// Takes a part, which messages call so, once. `take_parts` adds up what it refers to: in
+    /// either direction, since OpenColorIO follows both wherever it looks for variables.
+    template <class TakeParts>
+    Extent take(const std::string& part, const TakeParts& take_parts) {
+        if (const auto again = std::ranges::find(open_, part); again != open_.end()) {
+            std::string way;
+            for (auto at = again; at != open_.end(); ++at) way += *at + " -> ";
+            throw Fault{"its " + part + " refers to itself (" + way + part +
+                        "); let one of them refer to something else"};
+        }
+        if (const auto known = known_.find(part); known != known_.end()) return known->second;
+        open_.push_back(part);
+        Extent extent = take_parts();
+        ++extent.height;
+        // Real configs have a tenth of either.
+        constexpr std::size_t k_most_steps = 1000;
+        constexpr int k_highest = 100;
+        if (extent.height > k_highest || open_.size() > k_highest)
+            throw Fault{"its " + part +
+                        " is at the end of a chain of more than 100 references; shorten it"};
+        if (extent.steps > k_most_steps)
+            throw Fault{"its " + part + " takes more than 1000 steps; divide it"};
+        open_.pop_back();
+        return known_[part] = extent;
     }
-    for (int i = 0; i < config.getNumNamedTransforms(); ++i) {
-        const auto named = config.getNamedTransform(config.getNamedTransformNameByIndex(i));
-        tell_files(named->getTransform(OCIO::TRANSFORM_DIR_FORWARD), context, check);
-        tell_files(named->getTransform(OCIO::TRANSFORM_DIR_INVERSE), context, check);
+
+    static std::string text(const char* words) { return words != nullptr ? words : ""; }
+    static Extent sum(const Extent& a, const Extent& b) {
+        return {a.steps + b.steps, std::max(a.height, b.height)};
     }
-}
+
+    /// A colour space, or a named transform in its place.
+    Extent take_space(const std::string& name) {
+        const std::string resolved = text(context_.resolveStringVar(name.c_str()));
+        const OCIO::ConstColorSpaceRcPtr space = config_.getColorSpace(resolved.c_str());
+        if (!space) return take_named(resolved);
+        // Roles and aliases stand for one space.
+        return take("colour space '" + text(space->getName()) + "'", [&] {
+            return sum(take_transform(space->getTransform(OCIO::COLORSPACE_DIR_TO_REFERENCE)),
+                       take_transform(space->getTransform(OCIO::COLORSPACE_DIR_FROM_REFERENCE)));
+        });
+    }
+    Extent take_named(const std::string& name) {
+        const auto named = config_.getNamedTransform(name.c_str());
+        if (!named) return {};  // OpenColorIO says so
+        return take("named transform '" + text(named->getName()) + "'", [&] {
+            return sum(take_transform(named->getTransform(OCIO::TRANSFORM_DIR_FORWARD)),
+                       take_transform(named->getTransform(OCIO::TRANSFORM_DIR_INVERSE)));
+        });
+    }
+    Extent take_look(const std::string& name) {
+        const auto look = config_.getLook(name.c_str());
+        if (!look) return {};
+        return take("look '" + text(look->getName()) + "'", [&] {
+            return sum(take_space(text(look->getProcessSpace())),
+                       sum(take_transform(look->getTransform()),
+                           take_transform(look->getInverseTransform())));
+        });
+    }
+    Extent take_looks(const std::string& list) {
+        Extent all;
+        for (const std::string& look : looks_of(text(context_.resolveStringVar(list.c_str()))))
+            all = sum(all, take_look(look));
+        return all;
+    }
+    Extent take_view_transform(const std::string& name) {
+        const auto view = config_.getViewTransform(name.c_str());
+        if (!view) return {};
+        return take("view transform '" + text(view->getName()) + "'", [&] {
+            return sum(take_transform(view->getTransform(OCIO::VIEWTRANSFORM_DIR_TO_REFERENCE)),
+                       take_transform(view->getTransform(OCIO::VIEWTRANSFORM_DIR_FROM_REFERENCE)));
+        });
+    }
+    Extent take_view(const std::string& display, const std::string& view) {
+        return take("view '" + view + "' of the display '" + display + "'", [&] {
+            const char *d = display.c_str(), *v = view.c_str();
+            std::string space = text(config_.getDisplayViewColorSpaceName(d, v));
+            if (space == OCIO::OCIO_VIEW_USE_DISPLAY_NAME) space = display;
+            const std::string transform = text(config_.getDisplayViewTransformName(d, v));
+            const Extent all =
+                sum(take_space(space), take_looks(text(config_.getDisplayViewLooks(d, v))));
+            return transform.empty() ? all : sum(all, take_view_transform(transform));
+        });
+    }
+    /// From one space to another; where one of them is a display's, by the config's own way there.
+    Extent take_conversion(const std::string& from, const std::string& to) {
+        const Extent all = sum(take_space(from), take_space(to));
+        const auto is_of_display = [&](const std::string& name) {
+            const auto space = config_.getColorSpace(context_.resolveStringVar(name.c_str()));
+            return space && space->getReferenceSpaceType() == OCIO::REFERENCE_SPACE_DISPLAY;
+        };
+        const auto view = config_.getDefaultSceneToDisplayViewTransform();
+        if (!view || is_of_display(from) == is_of_display(to)) return all;
+        return sum(all, take_view_transform(text(view->getName())));
+    }
+
+    Extent take_transform(const OCIO::ConstTransformRcPtr& transform) {
+        if (!transform) return {};
+        using OCIO::DynamicPtrCast;
+        Extent all{1, 0};
+        if (const auto group = DynamicPtrCast<const OCIO::GroupTransform>(transform)) {
+            for (int i = 0; i < group->getNumTransforms(); ++i)
+                all = sum(all, take_transform(group->getTransform(i)));
+        } else if (const auto file = DynamicPtrCast<const OCIO::FileTransform>(transform)) {
+            take_file(*file);
+        } else if (const auto space = DynamicPtrCast<const OCIO::ColorSpaceTransform>(transform)) {
+            all = sum(all, take_conversion(text(space->getSrc()), text(space->getDst())));
+        } else if (const auto look = DynamicPtrCast<const OCIO::LookTransform>(transform)) {
+            all = sum(all, sum(take_looks(text(look->getLooks())),
+                               take_conversion(text(look->getSrc()), text(look->getDst()))));
+        } else if (const auto view = DynamicPtrCast<const OCIO::DisplayViewTransform>(transform)) {
+            all = sum(all, sum(take_space(text(view->getSrc())),
+                               take_view(text(view->getDisplay()), text(view->getView()))));
+        }
+        return all;
+    }
+    void take_file(const OCIO::FileTransform& file) {
+        std::string path;
+        try {
+            path = context_.resolveFileLocation(file.getSrc());
+        } catch (const OCIO::Exception&) {
+            return;  // there is none, which matters only if the view needs it
+        }
+        if (files_.insert(path).second) check_(path);
+    }
+
+    const OCIO::Config& config_;
+    OCIO::ConstContextRcPtr shared_;
+    const OCIO::Context& context_;
+    const Check& check_;
+    std::vector<std::string> open_;  // what is being taken, from the outermost part on
+    std::map<std::string, Extent> known_;
+    std::set<std::string> files_;
+};
 
 /// What linear sRGB is in a config: a space of its own, or one that a matrix leads to.
 struct Input {
@@ -150,15 +308,8 @@ class OpenColorIOView : public uw::ColourView {
 };
 
 /// Whether each look in a list such as "+neutral, -grade" exists.
-bool has_looks(const OCIO::Config& config, std::string_view looks, std::string& fault) {
-    while (!looks.empty()) {
-        const std::size_t end = looks.find_first_of(",:|");
-        std::string look(looks.substr(0, end));
-        looks = end == std::string_view::npos ? std::string_view() : looks.substr(end + 1);
-        constexpr const char* k_blanks = " \t";
-        look.erase(0, look.find_first_not_of(k_blanks));
-        look.erase(look.find_last_not_of(k_blanks) + 1);
-        if (!look.empty() && (look.front() == '+' || look.front() == '-')) look.erase(0, 1);
+bool has_looks(const OCIO::Config& config, const std::string& looks, std::string& fault) {
+    for (const std::string& look : looks_of(looks)) {
         if (config.getLook(look.c_str())) continue;
         fault = missing("look", look, config.getNumLooks(),
                         [&](int i) { return config.getLookNameByIndex(i); });
@@ -170,7 +321,8 @@ bool has_looks(const OCIO::Config& config, std::string_view looks, std::string& 
 std::shared_ptr<uw::ColourView> make_view(const uw::ViewRequest& request, std::string& fault) {
     OCIO::SetLoggingLevel(OCIO::LOGGING_LEVEL_NONE);
     const OCIO::ConstConfigRcPtr config = OCIO::Config::CreateFromFile(request.config.c_str());
-    tell_files(*config, request.check);
+    fault = ConfigWalk(*config, request.check).fault();
+    if (!fault.empty()) return nullptr;
     const std::string display =
         request.display.empty() ? config->getDefaultDisplay() : request.display;
     const int views = config->getNumViews(display.c_str());

@@ -7,29 +7,23 @@
 #include <variant>
 
 #include "core/light/submerged.h"
+#include "media/volumes/fluid_domain.h"
 #include "media/volumes/level_set_mesh.h"
 #include "media/volumes/stratified_field.h"
-#include "media/water/species.h"
 #include "render/marine_snow.h"
 
 namespace uw {
 
 namespace {
 
-std::vector<std::filesystem::path> files_of_water(const SceneDesc& scene) {
+/// Those that the water is read from, and the phase functions of what is in the volumes.
+FileStamps files_of_water(const SceneDesc& scene) {
     std::vector<std::filesystem::path> files;
-    const auto add = [&](const PhaseDesc& phase) {
-        if (const auto* table = std::get_if<TabulatedPhaseDesc>(&phase.function))
-            files.push_back(table->file);
-    };
-    if (scene.water.scattering) add(scene.water.scattering->phase);
-    if (scene.water.profile) files.push_back(scene.water.profile->file);
-    for (const SpeciesDesc& species : scene.water.species)
-        for (std::filesystem::path& file : files_of(species)) files.push_back(std::move(file));
-    for (const VolumeDesc& volume : scene.volumes)
-        for (const GridMappingDesc& grid : volume.grids)
-            if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
-    return files;
+    for (const NamedFile& named : scene.files)
+        if (named.key->path.starts_with("water.") ||
+            named.key->path.starts_with("volumes[*].grids"))
+            files.push_back(named.file);
+    return FileStamps(files);
 }
 
 std::vector<std::vector<GridMappingDesc>> grids_of(const SceneDesc& scene) {
@@ -46,7 +40,8 @@ WaterModel build_water(const SceneDesc& scene, const ShareCallback& progress) {
 }
 
 std::vector<std::filesystem::path> files_of(const VolumeDesc& volume) {
-    std::vector<std::filesystem::path> files{volume.file};
+    std::vector<std::filesystem::path> files = files_named_by_volume(volume.file);
+    files.push_back(volume.file);
     if (volume.motion) files.push_back(volume.motion->file);
     return files;
 }
@@ -70,7 +65,7 @@ bool SceneCache::KeptSurfaces::is_of(const SceneDesc& scene) const {
 
 const WaterModel& SceneCache::water(const SceneDesc& scene, const ShareCallback& progress) {
     if (!water_ || !water_->is_of(scene)) {
-        FileStamps files(files_of_water(scene));
+        FileStamps files = files_of_water(scene);
         WaterModel model = build_water(scene, progress);
         auto scattering = std::make_shared<const ScatteringTables>(model.medium);
         water_ = KeptWater{scene.water, grids_of(scene), std::move(files), std::move(model),

@@ -4,7 +4,6 @@
 
 #include <string_view>
 #include <utility>
-#include <variant>
 
 #include "camera/calibration.h"
 #include "camera/camera.h"
@@ -21,7 +20,6 @@
 #include "core/scene/variations.h"
 #include "core/scene/yaml_document.h"
 #include "media/volumes/fluid_domain.h"
-#include "media/water/species.h"
 #include "render/image_scene.h"
 
 namespace uw {
@@ -220,100 +218,44 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Walks through a scene description and collects the files that it names for a frame.
-class InputCollection {
-  public:
-    InputCollection(std::optional<int> frame, MeshSideFiles& known)
-        : frame_(frame), known_(known) {}
-
-    void add(const SceneDesc& scene) {
-        add(scene.file, "the scene", true);
-        add(scene.camera);
-        for (const RigCameraDesc& entry : scene.cameras) add(entry.camera);
-        add(scene.rig_trajectory);
-        if (scene.water.scattering) add(scene.water.scattering->phase);
-        if (scene.water.profile) add(scene.water.profile->file, "the profile of the water");
-        for (const SpeciesDesc& species : scene.water.species)
-            for (const fs::path& file : files_of(species)) add(file, "a species of the water");
-        for (const VolumeDesc& volume : scene.volumes) add(volume);
-        for (const GeometryDesc& geometry : scene.geometry) add(geometry);
-        for (const LampDesc& lamp : scene.lamps) {
-            add_named(lamp.profile, "a lamp profile of the scene");
-            if (lamp.spectrum) add(*lamp.spectrum, "a lamp spectrum of the scene");
-            add(lamp.trajectory);
-        }
-        const ColourDesc& colour = scene.render.colour;
-        add(colour.file, "the response of the scene");
-        if (colour.white) add(*colour.white, "the white light of the scene");
-        if (scene.render.view) add(*scene.render.view);
-    }
-    std::vector<InputFile> take() && { return std::move(files_); }
-
-  private:
-    fs::path file_of(const auto& input) const {
-        return frame_ && input.is_sequence ? file_of_frame(input.file, *frame_) : input.file;
-    }
-    void add(const fs::path& file, const char* what, bool is_hashed = false) {
-        if (!file.empty()) files_.push_back({file, what, is_hashed});
-    }
-    void add(const CameraDesc& camera) {
-        if (camera.calibration) add(camera.calibration->file, "a calibration of the scene", true);
-        add(camera.trajectory);
-        if (!camera.sensor) return;
-        add(camera.sensor->quantum_efficiency.file, "the quantum efficiency of a sensor");
-        add(camera.sensor->image.response.file, "the response curve of a camera");
-    }
-    void add(const std::optional<TrajectoryDesc>& trajectory) {
-        if (trajectory) add(trajectory->file, "a trajectory of the scene", true);
-    }
-    // The file of those alternatives of a variant that have one.
-    void add_named(const auto& variant, const char* what) {
-        std::visit(
-            [&](const auto& desc) {
-                if constexpr (requires { desc.file; }) add(desc.file, what);
-            },
-            variant);
-    }
-    void add(const PhaseDesc& phase) { add_named(phase.function, "a phase function of the scene"); }
-    void add(const LampSpectrumDesc& spectrum, const char* what) {
-        if (spectrum.type == LampSpectrumDesc::Type::file) add(spectrum.file, what);
-    }
-    void add(const ViewDesc& view) {
-        if (view.config.empty()) return;
-        const auto [found, is_new] = known_.try_emplace(view.config);
-        if (is_new) found->second = files_of(view);
-        for (const fs::path& file : found->second) add(file, "the OpenColorIO view of the scene");
-    }
-    void add(const VolumeDesc& volume) {
-        add(file_of(volume), "a volume of the scene");
-        if (volume.motion) add(file_of(*volume.motion), "a velocity file of the scene");
-        for (const GridMappingDesc& grid : volume.grids)
-            if (grid.optics && grid.optics->phase) add(*grid.optics->phase);
-    }
-    void add(const GeometryDesc& geometry) {
-        add(geometry.trajectory);
-        if (geometry.type != GeometryDesc::Type::file) return;
-        const fs::path mesh = file_of(geometry);
-        add(mesh, "a mesh of the scene");
-        const auto [found, is_new] = known_.try_emplace(mesh);
-        if (is_new) found->second = files_named_by_mesh(mesh);
-        for (const fs::path& file : found->second)
-            add(file, "a texture, buffer or material library of a mesh");
-    }
-
-    std::optional<int> frame_;
-    MeshSideFiles& known_;
-    std::vector<InputFile> files_;
-};
+const std::vector<fs::path>& known_side_files(SideFiles& known, const fs::path& file,
+                                              const auto& find) {
+    const auto [found, is_new] = known.try_emplace(file);
+    if (is_new) found->second = find();
+    return found->second;
+}
 
 }  // namespace
 
 std::vector<InputFile> input_files(const SceneDesc& whole, const ImageChoice& choice,
-                                   MeshSideFiles& known) {
+                                   SideFiles& known) {
     check_moment(whole, choice);
-    InputCollection collection(choice.frame, known);
-    collection.add(whole);
-    return std::move(collection).take();
+    const auto of_frame = [&](const auto& input) {
+        return choice.frame && input.is_sequence ? file_of_frame(input.file, *choice.frame)
+                                                 : input.file;
+    };
+    std::vector<InputFile> files{{whole.file, "the scene", true}};
+    for (const NamedFile& named : whole.files)
+        files.push_back({of_frame(named), named.key->what, named.key->is_hashed});
+    const auto add_all = [&](const std::vector<fs::path>& side_files, const char* what) {
+        for (const fs::path& file : side_files) files.push_back({file, what});
+    };
+    for (const VolumeDesc& volume : whole.volumes) {
+        if (volume.file.empty()) continue;
+        const fs::path file = of_frame(volume);
+        add_all(known_side_files(known, file, [&] { return files_named_by_volume(file); }),
+                "the configuration of a fluid in the scene");
+    }
+    for (const GeometryDesc& geometry : whole.geometry) {
+        if (geometry.type != GeometryDesc::Type::file || geometry.file.empty()) continue;
+        const fs::path mesh = of_frame(geometry);
+        add_all(known_side_files(known, mesh, [&] { return files_named_by_mesh(mesh); }),
+                "a texture, buffer or material library of a mesh");
+    }
+    if (const std::optional<ViewDesc>& view = whole.render.view; view && !view->config.empty())
+        add_all(known_side_files(known, view->config, [&] { return files_named_by_view(*view); }),
+                "the OpenColorIO view of the scene");
+    return files;
 }
 
 }  // namespace uw

@@ -78,20 +78,21 @@ void apply_request(const ImageRequest& request, SceneDesc& scene);
 /// A file that a scene is read from.
 struct InputFile {
     std::filesystem::path file;
-    std::string what;  // for messages: "a volume of the scene"
+    std::string_view what;  // for messages: "a volume of the scene"
     /// Whether its content is part of SceneDesc::hash: a change shows without its date.
     bool is_hashed = false;
 };
 
-/// The files that glTF and OBJ files and OpenColorIO configs refer to, by that file: looked up once
+/// The files that meshes, volumes and OpenColorIO configs refer to, by that file: looked up once
 /// for many frames.
-using MeshSideFiles = std::map<std::filesystem::path, std::vector<std::filesystem::path>>;
+using SideFiles = std::map<std::filesystem::path, std::vector<std::filesystem::path>>;
 
 /// Every file that an image of a scene is read from, the scene file itself first: the one answer to
-/// which files it depends on. Sequences without a frame are listed by their own names. A file that
+/// which files it depends on. They are those that the scene's keys name (SceneDesc::files) and
+/// those that these refer to. Sequences without a frame are listed by their own names. A file that
 /// serves two purposes is listed twice. Missing or broken files are not an error here. `known` is
 /// looked up and added to. Throws InputError for a frame that a trajectory does not have.
 std::vector<InputFile> input_files(const SceneDesc& whole, const ImageChoice& choice,
-                                   MeshSideFiles& known);
+                                   SideFiles& known);
 
 }  // namespace uw

@@ -106,7 +106,7 @@ void check_sequences(std::span<const int> frames, const SceneDesc& scene) {
 
 std::vector<InputFile> check_inputs(const Job& job) {
     std::vector<InputFile> inputs;
-    MeshSideFiles known;
+    SideFiles known;
     for (std::span<const JobImage> left = job.images; !left.empty();) {
         const auto end = std::ranges::find_if(
             left, [&](const JobImage& image) { return image.scene != left.front().scene; });

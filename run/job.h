@@ -75,7 +75,7 @@ class InputTimes {
     JobScenes& scenes_;
     std::optional<JobImage> image_;  // the last asked for
     std::filesystem::file_time_type last_;
-    MeshSideFiles known_;
+    SideFiles known_;
 };
 
 /// Checks before the first image that the files of all sequences are there, and returns every file

@@ -4,9 +4,12 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -90,22 +93,22 @@ struct FitArguments {
 
 Options fit_options(FitArguments& a) {
     Options options;
-    options.path("SCENE", "", a.scene, "scene file, with values from where to begin");
-    options.path("--points", "CORNERS.csv", a.points, "points, and where images show them");
-    options.path("--images", "PICTURE", a.images,
-                 "photographs of the scene; %04d is the frame's number");
-    options.path("--poses", "MODEL", a.poses,
-                 "a COLMAP model or transforms.json with the camera's poses, by the pictures' "
-                 "names; --images may then be their folder");
+    options.input("SCENE", "", a.scene, "scene file, with values from where to begin");
+    options.input("--points", "CORNERS.csv", a.points, "points, and where images show them");
+    options.input("--images", "PICTURE", a.images,
+                  "photographs of the scene; %04d is the frame's number");
+    options.input("--poses", "MODEL", a.poses,
+                  "a COLMAP model or transforms.json with the camera's poses, by the pictures' "
+                  "names; --images may then be their folder");
     options.parsed(
         "--board", "COLUMNSxROWSxSIDE",
         [&a](const std::string& text) { a.board = read_board(text); },
         "the photographs show a checkerboard with so many inner corners, whose squares have this "
         "side [m]: its corners are what is observed");
-    options.path("--corners", "FILE.csv", a.corners, "write the corners found with --board");
-    options.path("--found-poses", "POSES.json", a.found_poses,
-                 "write where the camera was in each picture, in the board's axes, as --poses "
-                 "reads it");
+    options.output("--corners", "FILE.csv", a.corners, "write the corners found with --board");
+    options.output("--found-poses", "POSES.json", a.found_poses,
+                   "write where the camera was in each picture, in the board's axes, as --poses "
+                   "reads it");
     options.integer("--cells", "N", a.cells, 4, 4096,
                     "cells across a picture whose mean light is compared");
     Option& unknown = options.parsed(
@@ -153,12 +156,13 @@ Options fit_options(FitArguments& a) {
     options.integer("--starts", "N", a.starts, 1, 1000,
                     "places to begin from, all but the first at random; the best is kept");
     options.set(a.overrides);
-    options.path("-o,--output", "FITTED.yaml", a.output,
-                 "write the scene with what was found, all else as it is");
-    options.path("--report", "PAGE.html", a.page, "write a page with tables and plots");
-    options.path("--csv", "FILE", a.csv, "write all residuals as a table");
-    options.path("--target", "SHEET.pdf|SHEET.obj", a.target,
-                 "write a sheet to print, with a checkerboard, or its surface for scenes, and end");
+    options.output("-o,--output", "FITTED.yaml", a.output,
+                   "write the scene with what was found, all else as it is");
+    options.output("--report", "PAGE.html", a.page, "write a page with tables and plots");
+    options.output("--csv", "FILE", a.csv, "write all residuals as a table");
+    options.output(
+        "--target", "SHEET.pdf|SHEET.obj", a.target,
+        "write a sheet to print, with a checkerboard, or its surface for scenes, and end");
     Option& paper = options.parsed(
         "--paper", "SIZE", [&a](const std::string& text) { a.paper = read_paper(text); },
         "paper of --target: a4 (as it is if omitted), a3 or letter");
@@ -223,6 +227,19 @@ std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
     return text.text();
 }
 
+/// Refuses to replace a file that the command line does not name, unless it is what is written
+/// there, as by the same command before.
+void refuse_other_file(const std::filesystem::path& file, const std::string& content) {
+    std::error_code error;
+    if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return;
+    std::ifstream in = open_own_file(file);
+    if (in && content == std::string(std::istreambuf_iterator<char>(in), {})) return;
+    throw IoError(fmt::format(
+        "{}: cannot write: there is such a file, and --target names only the mesh; move it, or "
+        "give the mesh another name",
+        printable(file.string())));
+}
+
 void write_target(const FitArguments& a) {
     if (!a.scene.empty())
         throw UsageError(
@@ -234,6 +251,7 @@ void write_target(const FitArguments& a) {
         std::filesystem::path materials = a.target;
         materials.replace_extension(".mtl");
         const TargetMesh mesh = target_mesh(board, paper, materials.filename().string());
+        refuse_other_file(materials, mesh.mtl);
         files.add(a.target, mesh.obj);
         files.add(materials, mesh.mtl);
     } else if (a.target.extension() == ".pdf") {
@@ -277,7 +295,11 @@ void run_fit(const FitArguments& a) {
     if (!a.board)
         for (const ObservedPicture& picture : seen_pictures)
             names.push_back(picture.file.filename().string());
+    for (const ObservedPicture& picture : seen_pictures)
+        admit_input(picture.file, printable(picture.file.string(), 300), "picture");
     SceneUnknowns unknowns(read_scene_tree(a.scene, a.overrides), a.scene, a.unknowns, names);
+    if (!a.points.empty()) admit_input(a.points, printable(a.points.string(), 300), "table");
+    check_outputs({a.corners, a.found_poses, a.output, a.page, a.csv});
     FitOptions options;
     options.priors = priors_of(a, unknowns);
     options.starts = a.starts;

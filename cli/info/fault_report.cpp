@@ -140,7 +140,7 @@ std::string file_line(const fs::path& file, std::string_view what) {
 /// Each file that the scene is read from, or why that cannot be told.
 std::string scene_files(const FaultReportOf& of) {
     try {
-        MeshSideFiles side_files;
+        SideFiles side_files;
         std::string text;
         for (const InputFile& input :
              input_files(load_scene(of.subject, of.overrides), {}, side_files))

@@ -65,8 +65,8 @@ Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read 
 
 Options info_options(InfoArguments& a) {
     Options options;
-    options.path("FILE|SCENE", "", a.subject,
-                 "a .vdb or .nvdb file, a sequence, or a scene file; --report needs none");
+    options.input("FILE|SCENE", "", a.subject,
+                  "a .vdb or .nvdb file, a sequence, or a scene file; --report needs none");
     options.set(a.overrides);
     options.integer("--frame", "N", a.frame, 0, 999'999'999,
                     "which frame of a sequence, or of a scene that moves; default: the first that "
@@ -83,9 +83,9 @@ Options info_options(InfoArguments& a) {
     options.flag("--scene", a.scene,
                  "for a volume: print a whole scene that shows it, ready to render, and nothing "
                  "else");
-    options.path("--picture", "OUT.png", a.picture,
-                 "for a volume: write a thumbnail of that scene");
-    options.path(
+    options.output("--picture", "OUT.png", a.picture,
+                   "for a volume: write a thumbnail of that scene");
+    options.output(
         "--svg", "OUT.svg", a.svg,
         "for a scene that moves: draw the camera's path over it, from above and by height");
     options.flag("--json", a.json, "print everything as JSON");
@@ -228,8 +228,9 @@ std::string info_on_vdb(const InfoArguments& a) {
     if (!a.picture.empty() && a.picture.extension() != ".png")
         throw UsageError(fmt::format("--picture: '{}' does not end in .png",
                                      printable(a.picture.string(), 300)));
-    if (!a.picture.empty()) const AtomicFile check(a.picture);  // before the work
+    check_outputs({a.picture});
     const VdbSurvey survey = survey_vdb(a);
+    check_outputs({a.picture});  // which may be one of the files read
     if ((a.scene || !a.picture.empty()) && survey.advice.map.empty())
         throw InputError(fmt::format("{}: {} There is no scene to show; see 'uwvdb info' of it",
                                      printable(a.subject.filename().string(), 300),
@@ -326,11 +327,8 @@ std::string info_on_scene(const InfoArguments& a) {
 bool is_volume_file(const fs::path& file) {
     const std::string extension = lower_case(file.extension().string());
     if (extension == ".vdb" || extension == ".nvdb") return true;
-    std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) return false;
     std::string beginning(8, '\0');
-    std::ifstream(file, std::ios::binary)
-        .read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
+    open_own_file(file).read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
     return beginning == std::string(" BDV\0\0\0\0", 8) || beginning.starts_with("NanoVDB");
 }
 

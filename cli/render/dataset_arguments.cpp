@@ -134,9 +134,10 @@ std::string dataset_examples() {
 
 Options dataset_options(DatasetArguments& a) {
     Options options;
-    options.path("SCENE", "", a.image.scene, "scene file (docs/scene-file.md)");
-    options.path("-o,--output", "FOLDER", a.image.output,
-                 "the folder of the set; default: the scene's name with -dataset, in this folder");
+    options.input("SCENE", "", a.image.scene, "scene file (docs/scene-file.md)");
+    options.output(
+        "-o,--output", "FOLDER", a.image.output,
+        "the folder of the set; default: the scene's name with -dataset, in this folder");
     options.parsed(
         "--frames", "1-10,20-40:2|all",
         [&a](const std::string& text) {
@@ -175,8 +176,8 @@ Options dataset_options(DatasetArguments& a) {
         .flag("--slurm-dry-run", a.slurm_dry_run,
               "measure and write the jobs, but do not submit them")
         .needs = "--slurm";
-    options.path("--merge", "FOLDER", a.merge,
-                 "check the set in a folder whose shards are done, and complete it");
+    options.output("--merge", "FOLDER", a.merge,
+                   "check the set in a folder whose shards are done, and complete it");
     options.threads(a.image.threads);
     options.confine();
     options.messages(a.image.quiet, a.image.progress);

@@ -13,6 +13,7 @@
 #include "core/base/input_files.h"
 #include "core/base/output_files.h"
 #include "core/base/text.h"
+#include "core/image/colour_view.h"
 #include "core/image/image_formats.h"
 #include "render/image_header.h"
 #include "render/image_scene.h"
@@ -435,6 +436,8 @@ std::optional<std::string> frame_warning(const RenderArguments& a, const SceneDe
 void check_frames(const FrameSequence& sequence, JobScenes& scenes) {
     OutputCheck outputs;
     outputs.take_inputs(check_inputs({scenes, images_of(sequence.frames)}));
+    if (const fs::path config = config_of_environment(); !config.empty())
+        outputs.take_inputs({{config, "the OpenColorIO config of the environment"}});
     for (const Frame& frame : sequence.frames) outputs.take_outputs(frame.files);
     OutputFiles about_all;
     about_all.stats = sequence.stats;

@@ -94,8 +94,8 @@ ExrOptions RenderArguments::exr() const {
 
 Options render_options(RenderArguments& a) {
     Options options;
-    options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
-    options.path(
+    options.input("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
+    options.output(
         "-o,--output", "OUT.exr", a.output,
         "EXR to write, or a PNG, TIFF, ... or the camera's image alone; default: the scene's name, "
         "in this folder");
@@ -148,8 +148,8 @@ Options render_options(RenderArguments& a) {
             [&a](const std::string& text) { a.preview_bits = preview_bits_in(text); },
             "bits per channel of the preview, or of what is written in its place: 8 or 16"),
         k_preview_bits);
-    options.path("--contact-sheet", "OUT.png", a.contact_sheet,
-                 "write small pictures of all images, side by side");
+    options.output("--contact-sheet", "OUT.png", a.contact_sheet,
+                   "write small pictures of all images, side by side");
     options.integer("--samples", "N", a.samples, 1, k_most_paths,
                     fmt::format("surface samples per pixel, 1 to {}; with --integrator path light "
                                 "paths, up to {}",
@@ -166,12 +166,13 @@ Options render_options(RenderArguments& a) {
                  k_quality_names);
     options.threads(a.threads);
     options.confine();
-    options.path("--stats", "FILE", a.stats, "write times, rays, voxels and memory as JSON");
-    options.path("--numbers", "FILE.csv", a.numbers,
-                 "measure signal, backscatter, contrast and evenness, lamp by lamp; -: print them");
+    options.output("--stats", "FILE", a.stats, "write times, rays, voxels and memory as JSON");
+    options.output(
+        "--numbers", "FILE.csv", a.numbers,
+        "measure signal, backscatter, contrast and evenness, lamp by lamp; -: print them");
     add_part_options(options, a.parts);
-    options.path("--irradiance-vdb", "FILE", a.irradiance_vdb,
-                 "write each lamp's irradiance per band as grids of a VDB");
+    options.output("--irradiance-vdb", "FILE", a.irradiance_vdb,
+                   "write each lamp's irradiance per band as grids of a VDB");
     options.messages(a.quiet, a.progress);
     return options;
 }

@@ -33,11 +33,22 @@ namespace uw {
 
 namespace {
 
-// Whether the preview of an image that exists is stored as requested; `exposure`: as it is to be,
-// none: as it is.
+// Whether a file has been changed after `time`, or cannot be told to be older.
+bool is_newer(const std::filesystem::path& file, std::filesystem::file_time_type time) {
+    std::error_code error;
+    const auto written = std::filesystem::last_write_time(file, error);
+    return error || written > time;
+}
+
+// Whether the preview of an image that was rendered at `time` is stored as requested; `exposure`:
+// as it is to be, none: as it is.
 bool has_preview(const OutputFiles& files, const RenderArguments& a,
-                 const std::optional<double>& exposure, const std::optional<ViewDesc>& desc) {
+                 const std::optional<double>& exposure, const std::optional<ViewDesc>& desc,
+                 std::filesystem::file_time_type time) {
     const std::shared_ptr<const ColourView> view = colour_view(desc);
+    if (view &&
+        std::ranges::any_of(view->files, [&](const auto& file) { return is_newer(file, time); }))
+        return false;
     const std::optional<PreviewHeader> header = read_preview_header(files.preview);
     return header && header->bits == a.preview_bits.value_or(8) &&
            header->view == (view ? view->name : "") &&
@@ -50,7 +61,7 @@ void leave_out_rendered(FrameSequence& sequence, RunScenes& scenes, const Render
                         RunExposure& exposure) {
     const PathRequest paths = a.paths();
     const ExrOptions storage = a.exr();
-    const auto is_wanted = [&](const Frame& frame) {
+    const auto is_wanted = [&](const Frame& frame, std::filesystem::file_time_type time) {
         // Headers describe the camera that was rendered, possibly a glTF file's.
         const ImageScene scene = scene_of_image(scenes.of(frame.variation), frame.image().choice);
         const CameraDesc& camera = scene.desc().camera;
@@ -59,7 +70,7 @@ void leave_out_rendered(FrameSequence& sequence, RunScenes& scenes, const Render
                                            : layer_plan(scene, a.layers, paths).channel_names(),
                                  storage};
         return has_header_of(frame.files.image, layout, metadata_of(scene, frame.number, paths)) &&
-               has_preview(frame.files, a, exposure.of_all(), scene.desc().render.view);
+               has_preview(frame.files, a, exposure.of_all(), scene.desc().render.view, time);
     };
     InputTimes inputs(scenes.job());
     std::vector<int> there;  // frames of the scene itself
@@ -69,7 +80,7 @@ void leave_out_rendered(FrameSequence& sequence, RunScenes& scenes, const Render
     for (Frame& frame : sequence.frames) {
         const auto time = time_rendered(frame);
         const bool rendered =
-            time && inputs.last_change(frame.image()) <= *time && is_wanted(frame);
+            time && inputs.last_change(frame.image()) <= *time && is_wanted(frame, *time);
         if (rendered && left.empty()) {
             const double first = read_preview_header(frame.files.preview)->exposure;
             if (first != 1) exposure.keep(first);  // or it is black

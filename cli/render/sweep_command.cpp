@@ -88,9 +88,10 @@ Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read 
 
 Options sweep_options(SweepArguments& a) {
     Options options;
-    options.path("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
-    options.path("-o,--output", "OUT.csv", a.output,
-                 "the table; the plot gets its name with .svg; default: the scene's, with -sweep");
+    options.input("SCENE", "", a.scene, "scene file (docs/scene-file.md)").required = true;
+    options.output(
+        "-o,--output", "OUT.csv", a.output,
+        "the table; the plot gets its name with .svg; default: the scene's, with -sweep");
     Option& set = options.parsed(
         "--set", "KEY.PATH=FIRST:LAST:STEP",
         [&a](const std::string& text) {
@@ -416,7 +417,8 @@ void run_sweep(const SweepArguments& a) {
     const std::filesystem::path table = table_of(a);
     std::filesystem::path plot = table;
     plot.replace_extension(".svg");
-    for (const auto& file : {table, plot}) const AtomicFile probe(file);
+    scene_at(a, 0);  // whose files outputs never replace
+    check_outputs({table, plot});
     begin_orderly_stop();
     Sweep sweep;
     {

@@ -17,7 +17,6 @@
 #include "cli/validate/published_report.h"
 #include "cli/validate/validation_report.h"
 #include "core/base/error.h"
-#include "core/base/output_files.h"
 #include "core/base/parallel.h"
 #include "render/image_scene.h"
 #include "render/scene_loading.h"
@@ -48,9 +47,10 @@ Exit codes: 0 all within the tolerance, 5 not; 1 internal fault, 2 wrong usage, 
 
 Options validate_options(ValidateArguments& a) {
     Options options;
-    options.path("SCENE", "", a.scene, "scene file; default: the built-in suite");
+    options.input("SCENE", "", a.scene, "scene file; default: the built-in suite");
     options.set(a.overrides);
-    options.path("--report", "FILE.html", a.report, "write one HTML page with pictures and plots");
+    options.output("--report", "FILE.html", a.report,
+                   "write one HTML page with pictures and plots");
     options.flag("--published", a.published,
                  "compare with what others have published and photographed, some minutes");
     options.number("--tolerance", "R", a.tolerance, 0, 1,
@@ -95,13 +95,14 @@ bool run_validate(const ValidateArguments& a, bool colour, std::ostream& out) {
     const ThreadLimit limit(a.threads);
     if (a.scene.empty() && !a.overrides.empty())
         throw UsageError("--set: the built-in suite has no scene file to change; name a scene");
-    if (!a.report.empty()) const AtomicFile probe(a.report);
+    check_outputs({a.report});
     if (a.published) return run_published(a, colour, out);
     const ValidationSuite suite;
     std::vector<std::pair<std::string, SceneDesc>> scenes = suite.scenes();
     std::vector<std::pair<std::string, SceneDesc>> all_light = suite.all_light();
     if (!a.scene.empty()) {
         scenes = {{a.scene.filename().string(), load_scene(a.scene, a.overrides)}};
+        check_outputs({a.report});            // which may be one of the scene's files
         scenes[0].second.water.snow.reset();  // particles do not depend on the method
         all_light.clear();
         if (layer_plan(scene_of_image(scenes[0].second, {}), {}).is_provided(Layer::multiple))

@@ -169,7 +169,7 @@ std::string stand_in_of(const fs::path& file) {
         return k_annex;
     if (!fs::is_regular_file(file, error)) return "";
     std::string beginning(256, '\0');
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_own_file(file);
     in.read(beginning.data(), static_cast<std::streamsize>(beginning.size()));
     beginning.resize(static_cast<std::size_t>(in.gcount()));
     if (beginning.starts_with("version https://git-lfs.github.com/spec/") ||
@@ -281,7 +281,6 @@ bool inputs_are_confined() {
 void remember_input(const fs::path& file) {
     Registry& all = registry();
     const std::lock_guard lock(all.mutex);
-    check_confines(file, all);
     const std::optional<FileStamp> stamp = stamp_of(file);
     if (!stamp) return;
     std::error_code error;
@@ -294,6 +293,71 @@ void remember_input(const fs::path& file) {
         return;
     }
     all.inputs.emplace(identity_of(*stamp), Input{std::move(absolute), *stamp});
+}
+
+namespace {
+
+/// Throws IoError unless `file` is a regular one, or a pipe where these are read.
+void check_kind(const fs::path& file, const std::string& subject, std::string_view noun,
+                Pipes pipes) {
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    const auto fail = [&](const std::string& what) {
+        throw IoError(fmt::format("{}: {}", subject, what));
+    };
+    switch (status.type()) {
+        case fs::file_type::regular:
+            return;
+        case fs::file_type::not_found:
+            return fail(fmt::format("no such file; check the name of the {}", noun));
+        case fs::file_type::directory:
+            return fail(fmt::format("is a folder; name the {} in it", noun));
+        case fs::file_type::character:
+        case fs::file_type::block:
+            return fail(fmt::format("is a device; name the {}", noun));
+        case fs::file_type::fifo:
+            if (pipes == Pipes::read) return;
+            return fail(fmt::format("is a pipe; name the {}", noun));
+        case fs::file_type::none:
+            return fail("cannot be read; check its permissions");
+        default:
+            return fail(fmt::format("is no file that can be read; name the {}", noun));
+    }
+}
+
+void admit(const fs::path& file, const std::string& subject, std::string_view noun,
+           NamedBy named_by, Pipes pipes) {
+    if (named_by == NamedBy::scene) {
+        Registry& all = registry();
+        const std::lock_guard lock(all.mutex);
+        check_confines(file, all);
+    }
+    check_kind(file, subject, noun, pipes);
+    remember_input(file);
+}
+
+}  // namespace
+
+void admit_input(const fs::path& file, const std::string& subject, std::string_view noun,
+                 NamedBy named_by) {
+    admit(file, subject, noun, named_by, Pipes::refused);
+}
+
+std::ifstream open_input(const fs::path& file, const std::string& subject, std::string_view noun) {
+    admit_input(file, subject, noun);
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw IoError(fmt::format("{}: cannot be read; check its permissions", subject));
+    return in;
+}
+
+std::ifstream open_own_file(const fs::path& file) {
+    std::error_code error;
+    std::ifstream in;
+    if (fs::is_regular_file(file, error))
+        in.open(file, std::ios::binary);
+    else
+        in.setstate(std::ios::failbit);
+    return in;
 }
 
 std::vector<fs::path> inputs_outside(const fs::path& folder) {
@@ -412,16 +476,8 @@ std::string other_format(std::string_view bytes, const std::filesystem::path& fi
 }
 
 std::string read_text_file(const std::filesystem::path& file, const std::string& subject,
-                           std::size_t most_bytes, std::string_view noun) {
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    if (status.type() == std::filesystem::file_type::not_found)
-        throw IoError(fmt::format("{}: no such file; check the name of the {}", subject, noun));
-    if (std::filesystem::is_directory(status))
-        throw IoError(fmt::format("{}: is a folder; name the {} in it", subject, noun));
-    if (std::filesystem::is_character_file(status) || std::filesystem::is_block_file(status))
-        throw IoError(fmt::format("{}: is a device; name the {}", subject, noun));
-    remember_input(file);
+                           std::size_t most_bytes, std::string_view noun, Pipes pipes) {
+    admit(file, subject, noun, NamedBy::scene, pipes);
     const OpenFile open(file);
     std::string text;
     ::ssize_t count = 1;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -67,13 +68,36 @@ class FileStamps {
     std::vector<std::pair<std::filesystem::path, std::optional<FileStamp>>> stamps_;
 };
 
-/// Remembers, until the program ends, that `file` was opened to be read for the user: AtomicFile
-/// never replaces it. To be called by whatever opens such a file, before it does. Throws InputError
-/// if inputs are confined and `file` is not where they may be. Thread safe.
+/// Remembers, until the program ends, that `file` is read for the user: AtomicFile never replaces
+/// it. Thread safe.
 void remember_input(const std::filesystem::path& file);
 
-/// From now on, until the program ends, all inputs have to lie in the folder of the first of them
-/// or below it, after symbolic links: what a scene from a stranger names cannot lead elsewhere.
+/// Who named an input: a scene, which may be a stranger's, or the user, whose own files may lie
+/// anywhere.
+enum class NamedBy { scene, user };
+
+/// The door through which inputs come. Whatever opens a file for the user, or has a library open
+/// it, calls this before it does, or calls open_input. It checks that the file is a regular one,
+/// since a pipe would wait and a device never end, and that it lies where inputs may
+/// (confine_inputs), and remembers it (remember_input). Messages begin with `subject`
+/// ("plume.yaml", or the scene entry that names the file, followed by the file) and call what was
+/// expected `noun`
+/// ("scene", "IES file"). Throws IoError if there is no such file, or it is no regular one;
+/// InputError if it lies elsewhere. Thread safe.
+void admit_input(const std::filesystem::path& file, const std::string& subject,
+                 std::string_view noun, NamedBy named_by = NamedBy::scene);
+
+/// The same, and opens the file. Throws IoError, too, if it may not be read.
+std::ifstream open_input(const std::filesystem::path& file, const std::string& subject,
+                         std::string_view noun);
+
+/// Opens a file of the program's own, such as one that an earlier run wrote: it is no input, and
+/// may be replaced. The stream has failed if there is no such file, or it is no regular one.
+std::ifstream open_own_file(const std::filesystem::path& file);
+
+/// From now on, until the program ends, all inputs that a scene names have to lie in the folder of
+/// the first of them or below it, after symbolic links: what a scene from a stranger names cannot
+/// lead elsewhere.
 void confine_inputs();
 
 /// Whether they have to.
@@ -96,12 +120,15 @@ bool is_input(const std::filesystem::path& file);
 std::string other_format(std::string_view bytes, const std::filesystem::path& file,
                          std::string_view noun);
 
-/// The unmodified contents of a text file of at most `most_bytes`. Messages begin with `subject`
-/// ("plume.yaml", or the scene entry that names the file, followed by the file) and call what was
-/// expected `noun` ("scene", "IES file"). Throws IoError if the file does not exist, is a folder,
-/// or cannot be read; InputError if it is larger. A pipe is read until it ends or the limit is
-/// exceeded; one that nobody writes to is empty.
+/// Whether a pipe may stand for a file, as where the user's shell makes one on the command line. It
+/// is read until it ends; one that nobody writes to is empty.
+enum class Pipes { refused, read };
+
+/// The unmodified contents of a text file of at most `most_bytes`, which is admitted as by
+/// admit_input. Throws as that does; IoError if the file cannot be read; InputError if it is
+/// larger.
 std::string read_text_file(const std::filesystem::path& file, const std::string& subject,
-                           std::size_t most_bytes, std::string_view noun);
+                           std::size_t most_bytes, std::string_view noun,
+                           Pipes pipes = Pipes::refused);
 
 }  // namespace uw

@@ -138,14 +138,7 @@ void put_back(nlohmann::json& list, std::vector<std::string>& uris) {
 
 std::string read_gltf_text(const std::filesystem::path& file) {
     const std::string name = printed_name(file);
-    std::error_code status;
-    // A pipe or device under a mesh's name would block the reader.
-    const bool is_file = std::filesystem::is_regular_file(file, status);
-    remember_input(file);
-    std::ifstream in;
-    if (is_file) in.open(file, std::ios::binary);
-    if (!is_file || !in)
-        throw IoError(name + ": cannot open the mesh; check the name and its permissions");
+    std::ifstream in = open_input(file, name, "mesh");
     const std::uint64_t size = std::filesystem::file_size(file);
     std::string header = read_bytes(in, std::min<std::uint64_t>(size, k_glb_header));
     if (!header.starts_with("glTF")) {
@@ -292,8 +285,7 @@ std::array<int, 256> base64_digits() {
 
 std::vector<std::byte> read_range(const std::filesystem::path& file, std::uint64_t offset,
                                   std::uint64_t size) {
-    remember_input(file);
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_input(file, printed_name(file), "glTF buffer");
     std::vector<std::byte> bytes(size);
     in.seekg(static_cast<std::streamoff>(offset));
     in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));

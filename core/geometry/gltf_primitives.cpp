@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "core/geometry/gltf_document.h"
 #include "core/image/image_file.h"
@@ -63,7 +62,6 @@ std::shared_ptr<const Texture> GltfMaterials::picture(std::size_t image, Texture
     const std::string& uri = gltf_uri(json);
     if (!uri.empty() && !uri.starts_with("data:")) {
         const std::filesystem::path file = gltf_uri_path(document_.file(), uri);
-        remember_input(file);
         known = uw::read_texture(file, encoding, keep_alpha);
         return known;
     }

@@ -181,19 +181,13 @@ class ObjText {
 }  // namespace
 
 ObjFile read_obj_file(const std::filesystem::path& file) {
-    remember_input(file);
-    std::ifstream in(file, std::ios::binary);
-    if (!in) {
-        throw IoError(file.string() + ": cannot open the mesh; check the name and its permissions");
-    }
+    std::ifstream in = open_input(file, file.string(), "mesh");
     return ObjText(file).read(in);
 }
 
 std::vector<std::string> libraries_of_obj(const std::filesystem::path& file) {
     std::vector<std::string> libraries;
-    std::error_code status;
-    if (!std::filesystem::is_regular_file(file, status)) return libraries;
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_input(file, file.string(), "mesh");
     for (std::string text; std::getline(in, text);) {
         throw_if_stopped();
         if (text.find("mtllib") == std::string::npos) continue;

@@ -13,7 +13,6 @@
 #include <utility>
 
 #include "core/base/error.h"
-#include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "core/base/vector_math.h"
 #include "core/geometry/mesh_text.h"
@@ -188,10 +187,7 @@ class Materials {
             return use;
         }
         auto& picture = pictures_[*file];
-        if (!picture) {
-            remember_input(*file);
-            picture = read_texture(*file);
-        }
+        if (!picture) picture = read_texture(*file);
         use.texture = picture;
         if (map.clamp) use.lookup.wrap_u = use.lookup.wrap_v = TextureWrap::clamp;
         // (u, v) -> (s u + o, t v + p) with v up; ours points down.

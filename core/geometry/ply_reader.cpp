@@ -407,9 +407,7 @@ void read_faces(const PlyElement& element, PlySource& source, const std::string&
 
 TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string>& warnings) {
     const std::string name = file.string();
-    remember_input(file);
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw IoError(name + ": cannot open the mesh; check the name and its permissions");
+    std::ifstream in = open_input(file, name, "mesh");
     const PlyHeader header = read_ply_header(in, name);
     check_counts(header, std::filesystem::file_size(file), name);
     PlySource source(in, header.encoding, name);

@@ -174,9 +174,7 @@ class StlText {
 
 TriangleMesh read_stl(const std::filesystem::path& file) {
     const std::string name = file.string();
-    remember_input(file);
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw IoError(name + ": cannot open the mesh; check the name and its permissions");
+    std::ifstream in = open_input(file, name, "mesh");
     Beginning beginning{.file_size = std::filesystem::file_size(file)};
     in.read(beginning.bytes.data(), static_cast<std::streamsize>(beginning.bytes.size()));
     TriangleMesh mesh;

@@ -38,8 +38,12 @@ class ColourView {
 /// look that does not exist; IoError for a file that cannot be read.
 std::shared_ptr<const ColourView> colour_view(const std::optional<ViewDesc>& desc);
 
-/// The files of a scene's view; the config alone, if it cannot be made. `desc` has a config.
-std::vector<std::filesystem::path> files_of(const ViewDesc& desc);
+/// The OpenColorIO config that the environment variable OCIO names; empty: none.
+std::filesystem::path config_of_environment();
+
+/// The files that the config of a scene's view refers to as far as the view needs them; none, if
+/// the view cannot be made. `desc` has a config.
+std::vector<std::filesystem::path> files_named_by_view(const ViewDesc& desc);
 
 /// What the module for OpenColorIO is asked for: words are empty where the config's defaults are
 /// wanted.

@@ -83,7 +83,7 @@ Preview contact_sheet(std::span<const std::filesystem::path> pictures, int colum
     int cell_width = 1, cell_height = 1;
     for (std::size_t i = 0; i < pictures.size(); ++i) {
         if (!std::filesystem::is_regular_file(pictures[i])) continue;
-        const PixelImage image = read_image(pictures[i]);
+        const PixelImage image = read_own_image(pictures[i]);
         if (columns == 0)
             columns =
                 usual_columns(pictures.size(), static_cast<double>(image.height) / image.width);

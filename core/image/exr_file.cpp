@@ -31,6 +31,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/parallel.h"
 #include "core/image/layers.h"
 
@@ -143,7 +144,7 @@ bool take_name(std::istream& in, bool& is_empty) {
 bool exr_attributes_fit(const std::filesystem::path& file) {
     std::error_code error;
     const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_own_file(file);
     std::uint32_t magic = 0, version = 0;
     if (error || !take(in, magic) || !take(in, version)) return false;
     constexpr std::uint32_t k_several_parts = 0x1000;
@@ -342,9 +343,6 @@ void write_exr_file(OutputFile& out, const Film& film, const ExrHeader& header) 
 }
 
 std::optional<ExrHeader> read_exr_header(const std::filesystem::path& file) {
-    std::error_code status;
-    // A pipe or device under an image's name would block the reader.
-    if (!std::filesystem::is_regular_file(file, status)) return std::nullopt;
     if (!exr_attributes_fit(file)) return std::nullopt;
     try {
         constexpr int k_no_threads = 0;

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/output_files.h"
 #include "core/base/text.h"
 #include "core/image/aces.h"
@@ -30,16 +31,13 @@ bool starts_with(std::span<const std::byte> encoded, std::initializer_list<int> 
                       [](int a, std::byte b) { return a == std::to_integer<int>(b); });
 }
 
-std::vector<std::byte> read_encoded(const std::filesystem::path& file) {
+/// `in`: the file, open.
+std::vector<std::byte> read_encoded(std::ifstream in, const std::filesystem::path& file) {
     std::error_code status;
-    // A pipe or device under an image's name would block the reader.
-    if (!std::filesystem::is_regular_file(file, status))
-        throw IoError(file.string() + ": no such image file; check the name");
     const auto size = std::filesystem::file_size(file, status);
     if (!status && size > k_most_bytes)
         throw InputError(file.string() + ": larger than 2 GB; scale the image down");
     std::vector<std::byte> encoded(status ? 0 : size);
-    std::ifstream in(file, std::ios::binary);
     in.read(reinterpret_cast<char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
     if (!in) throw IoError(file.string() + ": cannot read the image file; check its permissions");
     return encoded;
@@ -48,11 +46,17 @@ std::vector<std::byte> read_encoded(const std::filesystem::path& file) {
 }  // namespace
 
 PixelImage read_image(const std::filesystem::path& file) {
-    return read_image(read_encoded(file), file.string());
+    const std::string name = file.string();
+    return read_image(read_encoded(open_input(file, name, "image file"), file), name);
+}
+
+PixelImage read_own_image(const std::filesystem::path& file) {
+    return read_image(read_encoded(open_own_file(file), file), file.string());
 }
 
 PixelImage read_linear_image(const std::filesystem::path& file) {
-    const std::vector<std::byte> encoded = read_encoded(file);
+    const std::vector<std::byte> encoded =
+        read_encoded(open_input(file, file.string(), "image file"), file);
     const std::optional<ImageFormat> format = other_image_format(encoded, file.string());
     PixelImage image;
     if (format) image = read_other_image(encoded, *format, file.string(), ImageRange::any);

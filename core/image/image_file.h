@@ -14,10 +14,13 @@
 
 namespace uw {
 
-/// Reads a PNG or JPEG file, or another by a module (core/image/image_formats.h). Throws IoError if
-/// it cannot be opened, InputError if it is none of these, is truncated or damaged, or is larger
-/// than 2^28 pixels.
+/// Reads a PNG or JPEG file, or another by a module (core/image/image_formats.h). Throws as
+/// open_input; InputError if it is none of these, is truncated or damaged, or is larger than 2^28
+/// pixels.
 PixelImage read_image(const std::filesystem::path& file);
+
+/// The same for a picture that the program wrote itself and may write again (open_own_file).
+PixelImage read_own_image(const std::filesystem::path& file);
 
 /// The same for an image in memory; messages call it `name`. Throws InputError.
 PixelImage read_image(std::span<const std::byte> encoded, const std::string& name);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/troubleshooting.h"
 #include "core/image/loaded_module.h"
 
@@ -123,7 +124,7 @@ PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> en
 std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::path& file,
                                                        std::int64_t most_whole) {
     std::array<std::byte, 16> beginning{};
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_input(file, file.string(), "image file");
     in.read(reinterpret_cast<char*>(beginning.data()), beginning.size());
     const auto format = other_image_format(beginning, file.string());
     if (!format || (std::string_view(format->reader) != "tiff" &&

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/image/pixel_image.h"
 
 namespace uw {
@@ -137,7 +138,7 @@ std::optional<PngHeader> read_png_header(const std::filesystem::path& file) {
     // Far more than the texts of an image take.
     constexpr std::size_t k_beginning = std::size_t{1} << 18;
     std::vector<std::byte> beginning(k_beginning);
-    std::ifstream in(file, std::ios::binary);
+    std::ifstream in = open_own_file(file);
     in.read(reinterpret_cast<char*>(beginning.data()), k_beginning);
     beginning.resize(static_cast<std::size_t>(in.gcount()));
     PngDecoder decoder(beginning);

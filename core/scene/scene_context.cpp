@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
 #include <system_error>
 
 #include "core/base/input_files.h"
@@ -15,7 +16,26 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t k_longest_name = 64;
 
+/// Whether `path` is `pattern`, in which a * stands for any text.
+bool matches(std::string_view path, std::string_view pattern) {
+    const std::size_t star = pattern.find('*');
+    if (star == std::string_view::npos) return path == pattern;
+    if (!path.starts_with(pattern.substr(0, star))) return false;
+    path.remove_prefix(star);
+    pattern.remove_prefix(star + 1);
+    for (std::size_t skipped = 0; skipped <= path.size(); ++skipped)
+        if (matches(path.substr(skipped), pattern)) return true;
+    return false;
+}
+
+const FileKey& file_key_of(const ConfigValue& value) {
+    for (const FileKey& key : k_file_keys)
+        if (matches(value.path(), key.path)) return key;
+    throw std::logic_error(value.path() + " is not among k_file_keys");
+}
+
 fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* is_sequence) {
+    const FileKey& key = file_key_of(value);
     constexpr std::size_t k_longest_file_name = 4096;
     const std::string name = value.text("give the name of a file");
     if (name.size() > k_longest_file_name) value.fail("is too long for a file name; shorten it");
@@ -25,6 +45,7 @@ fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* 
     if (status.type() == fs::file_type::not_found) {
         if (is_sequence != nullptr && has_frame_pattern(name)) {
             *is_sequence = true;
+            if (context.files != nullptr) context.files->push_back({&key, file, true});
             return file;
         }
         if (const std::string stand_in = stand_in_of(file); !stand_in.empty())
@@ -46,6 +67,8 @@ fs::path read_file(const ConfigValue& value, const SceneContext& context, bool* 
     if (!fs::is_regular_file(status)) {
         value.fail(fmt::format("'{}' is a pipe or device; name a file", printable(name, 200)));
     }
+    admit_input(file, value.location(), "file");
+    if (context.files != nullptr) context.files->push_back({&key, file});
     return file;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -43,6 +44,55 @@ struct SceneArrays {
     std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes;
 };
 
+/// A key of the scene file that names a file.
+struct FileKey {
+    std::string_view path;  ///< "lamps[*].profile.file": a * stands for any text
+    std::string_view what;  ///< for messages: "a lamp profile of the scene"
+    /// Whether the file's content is part of SceneDesc::hash: a change shows without its date.
+    bool is_hashed = false;
+};
+
+/// All of them. A file that a scene names is read by read_existing_file or
+/// read_existing_file_or_sequence, which know no others.
+inline constexpr std::array k_file_keys = std::to_array<FileKey>({
+    {"camera*.calibration", "a calibration of the scene", true},
+    {"camera*.calibration.file", "a calibration of the scene", true},
+    {"camera*.sensor.quantum_efficiency", "the quantum efficiency of a sensor"},
+    {"camera*.sensor.quantum_efficiency.file", "the quantum efficiency of a sensor"},
+    {"camera*.sensor.image.response", "the response curve of a camera"},
+    {"camera*.trajectory.file", "a trajectory of the scene", true},
+    {"rig.trajectory.file", "a trajectory of the scene", true},
+    {"water.scattering.phase.file", "a phase function of the scene"},
+    {"water.species.*.size.file", "a species of the water"},
+    {"water.species.*.coat.index.file", "a species of the water"},
+    {"water.species.*.index.file", "a species of the water"},
+    {"water.species.*.vsf", "a species of the water"},
+    {"water.species.*.absorption.file", "a species of the water"},
+    {"water.profile", "the profile of the water"},
+    {"water.surface.waves.file", "the waves of the water"},
+    {"volumes[*].file", "a volume of the scene"},
+    {"volumes[*].velocity.file", "a velocity file of the scene"},
+    {"volumes[*].grids.*.phase.file", "a phase function of the scene"},
+    {"geometry[*].file", "a mesh of the scene"},
+    {"geometry[*].trajectory.file", "a trajectory of the scene", true},
+    {"lamps[*].profile.file", "a lamp profile of the scene"},
+    {"lamps[*].spectrum.file", "a lamp spectrum of the scene"},
+    {"lamps[*].trajectory.file", "a trajectory of the scene", true},
+    {"sky.file", "the sky of the scene"},
+    {"sky.spectrum.file", "the sky of the scene"},
+    {"render.response", "the response of the scene"},
+    {"render.white.file", "the white light of the scene"},
+    {"render.view.config", "the OpenColorIO view of the scene"},
+    {"variations.*table", "the values of variations"},
+});
+
+/// A file that a scene names.
+struct NamedFile {
+    const FileKey* key;
+    std::filesystem::path file;
+    bool is_sequence = false;  ///< `file` has the pattern of a frame's number
+};
+
 /// Shared by the readers of a scene's sections. Each reads and fully checks one section, and throws
 /// InputError "file:line:column: key path: what; mend" for invalid input.
 struct SceneContext {
@@ -59,6 +109,8 @@ struct SceneContext {
     /// The species of the water, which is read before the volumes; null: there are none.
     const std::vector<SpeciesDesc>* species = nullptr;
     const SceneArrays* arrays = nullptr;  // null: the scene has files alone
+    std::vector<NamedFile>* files =
+        nullptr;  // to which those that keys name are added; may be null
 
     /// Adds the warning "<location>: <what>".
     void warn(const ConfigValue& value, const std::string& what) const {
@@ -66,7 +118,8 @@ struct SceneContext {
     }
 };
 
-/// A file name, resolved against the scene's folder. Throws InputError if no such file exists.
+/// A file name, resolved against the scene's folder; the file is admitted as an input
+/// (admit_input). Throws InputError if no such file exists.
 std::filesystem::path read_existing_file(const ConfigValue& value, const SceneContext& context);
 
 /// The same, but a name with patterns for the frame number that is not itself a file denotes a

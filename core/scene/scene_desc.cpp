@@ -244,8 +244,9 @@ ConfigNode without_variations(ConfigNode root) {
 
 ConfigNode read_scene_tree(const std::filesystem::path& file,
                            const std::vector<std::string>& overrides) {
-    return scene_tree(read_text_file(file, origin_of(file), YamlLimits{}.bytes, "scene"), file,
-                      overrides);
+    return scene_tree(
+        read_text_file(file, origin_of(file), YamlLimits{}.bytes, "scene", Pipes::read), file,
+        overrides);
 }
 
 ConfigNode scene_tree(std::string_view text, const std::filesystem::path& file,
@@ -278,6 +279,7 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     desc.file = file;
     SceneContext context{file.parent_path(), desc.water.bands_nm.size(), &desc.warnings};
     context.arrays = arrays;
+    context.files = &desc.files;
     desc.water.where = scene.location();
     desc.render.planes.where = scene.location() + ": render.planes";
     desc.render.scattering_where = scene.location() + ": render.scattering";

@@ -48,6 +48,7 @@ struct SceneDesc {
     std::vector<LampDesc> lamps;
     std::vector<MeterDesc> meters;  ///< `sensors`
     RenderDesc render;
+    std::vector<NamedFile> files;       ///< that its keys name, with the patterns of sequences
     std::string hash;                   ///< of the text as read with overrides, for image headers
     std::vector<std::string> warnings;  ///< one line each
 };

@@ -18,6 +18,7 @@
 #include "core/base/text.h"
 #include "core/scene/config_value.h"
 #include "core/scene/key_path.h"
+#include "core/scene/scene_context.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/yaml_document.h"
 
@@ -315,7 +316,9 @@ DrawnRows read_rows(const ConfigValue& value, const std::optional<ConfigValue>& 
 /// Rows of a CSV whose columns are named by the keys, but for `weight`.
 DrawnRows read_table(const ConfigValue& value, const std::filesystem::path& folder) {
     constexpr std::string_view k_weight = "weight";
-    const CsvTable table = read_csv_file(folder / value.text("name a CSV file"), value.location());
+    std::vector<std::string> warnings;
+    const SceneContext context{folder, 0, &warnings};
+    const CsvTable table = read_csv_file(read_existing_file(value, context), value.location());
     DrawnRows together;
     together.rows.assign(table.row_count(), {value.node().position.text(), {}});
     std::vector<double> weights;

@@ -221,7 +221,7 @@ class TreeBuilder : public YAML::EventHandler {
         source_.fail(mark.line, mark.column, what);
     }
     void check_tag(const YAML::Mark& mark, const std::string& tag) const {
-        if (tag.empty() || tag == "?" || tag == "!") return;
+        if (limits_.has_tags || tag.empty() || tag == "?" || tag == "!") return;
         fail(mark, fmt::format("the tag '{}' has no meaning in a {}; remove it", printable(tag),
                                limits_.subject));
     }

@@ -66,12 +66,13 @@ struct YamlLimits {
     std::size_t depth = 64;
     /// Its name in messages.
     std::string_view subject = "scene";
+    bool has_tags = false;  ///< tags are passed over; else they are refused
 };
 
 /// Parses one YAML (or JSON) document. `origin` names it in messages and in the nodes' positions.
-/// Aliases are expanded; tags and merge keys are not supported. Throws InputError
-/// "file:line:column: what; mend" for a document that is not YAML, not UTF-8 text, empty, or over
-/// the limits, for more than one document and for duplicate keys.
+/// Aliases are expanded; merge keys are not supported, and tags only where the limits say so.
+/// Throws InputError "file:line:column: what; mend" for a document that is not YAML, not UTF-8
+/// text, empty, or over the limits, for more than one document and for duplicate keys.
 ConfigNode parse_yaml(std::string_view text, const std::string& origin,
                       const YamlLimits& limits = {});
 

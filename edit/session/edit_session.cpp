@@ -18,6 +18,8 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
+#include "core/base/text.h"
 #include "edit/session/edited_scene.h"
 #include "edit/session/request_members.h"
 
@@ -135,8 +137,7 @@ EditSession::EditSession(std::filesystem::path file)
     : file_(std::move(file)),
       pictures_(picture_callbacks()),
       watch_(folder_of(file_), [this] { file_changed(); }) {
-    if (!std::filesystem::exists(file_))
-        throw IoError(fmt::format("{}: no such file; name a scene", file_.string()));
+    admit_input(file_, printable(file_.string(), 300), "scene");
     const std::lock_guard lock(mutex_);
     open();
 }

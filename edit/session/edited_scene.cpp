@@ -197,7 +197,7 @@ std::string mirrored_name(const std::string& name) {
 void refuse_files_elsewhere(const EditedScene& before, const EditedScene& after) {
     const SceneDesc &old = before.scene.whole(), &desc = after.scene.whole();
     // Meshes that are there already are not asked again what they name.
-    MeshSideFiles known;
+    SideFiles known;
     for (const GeometryDesc& geometry : old.geometry) known[geometry.file];
     std::set<std::filesystem::path> there;
     for (const InputFile& input : input_files(old, before.scene.choice(), known))

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <exception>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -277,7 +279,8 @@ std::string SessionMeasures::picture_png(std::optional<double> exposure) {
                   {{"uwvdb/scene", scene->scene.desc().file.filename().string()},
                    {"uwvdb/scene_hash", scene->scene.desc().hash}});
     out.commit();
-    return read_text_file(file, file.string(), std::filesystem::file_size(file), "picture");
+    std::ifstream in = open_own_file(file);
+    return {std::istreambuf_iterator<char>(in), {}};
 }
 
 void SessionMeasures::tell(Json event) {

@@ -38,7 +38,7 @@ std::filesystem::path config_of(const std::filesystem::path& data_file) {
 bool read_gzip(const std::filesystem::path& file, ConfigValues& values) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(file, error)) return false;
-    remember_input(file);
+    admit_input(file, file.string(), "configuration of the fluid");
     const gzFile in = gzopen(file.c_str(), "rb");
     if (in == nullptr) return false;
     const int size = static_cast<int>(sizeof values);
@@ -97,6 +97,13 @@ std::optional<FluidConfig> read_fluid_config(const std::filesystem::path& data_f
     read_box(values, config);
     config.time = static_cast<double>(std::bit_cast<float>(values[k_time]));
     return config;
+}
+
+std::vector<std::filesystem::path> files_named_by_volume(const std::filesystem::path& data_file) {
+    const std::filesystem::path config = config_of(data_file);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(config, error)) return {};
+    return {config};
 }
 
 namespace {

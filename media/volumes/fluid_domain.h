@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/base/vector_math.h"
 #include "core/scene/volume_desc.h"
@@ -29,6 +30,9 @@ struct FluidConfig {
 /// data/fluid_data_0030.vdb or noise/fluid_noise_0030.vdb. Empty if there is none, or if it is
 /// inconsistent or of another layout (that of Blender 2.82 to 4 is known).
 std::optional<FluidConfig> read_fluid_config(const std::filesystem::path& data_file);
+
+/// The files that a volume is read from beside its own: that configuration, if there is one.
+std::vector<std::filesystem::path> files_named_by_volume(const std::filesystem::path& data_file);
 
 /// The frames a second at which the cache that `data_file` belongs to was baked, from the times
 /// that this frame's configuration and a neighbour's state; right if the solver's Time Scale was 1.

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/base/available_memory.h"
+#include "core/base/input_files.h"
 #include "media/volumes/grid_bricks.h"
 #include "media/volumes/vdb_header.h"
 
@@ -28,7 +29,7 @@ constexpr std::uint64_t k_chunk_bytes = std::uint64_t{1} << 30;  // compressed o
 
 /// Decompresses the data at `in`'s position. Lengths preceding compressed chunks are not trusted.
 void unpack(ByteReader& in, const std::filesystem::path& file, bool zip, Buffer& to) {
-    std::ifstream stream(file, std::ios::binary);
+    std::ifstream stream = open_input(file, file.string(), "volume");
     stream.exceptions(std::ios::failbit | std::ios::badbit);
     for (std::uint64_t done = 0; done < to.size();) {
         const std::uint64_t chunk = zip ? to.size() : std::min(k_chunk_bytes, to.size() - done);

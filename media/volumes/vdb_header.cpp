@@ -67,15 +67,9 @@ constexpr std::int64_t k_window_bytes = 1 << 16;
 }  // namespace
 
 ByteReader::ByteReader(const std::filesystem::path& file, const SourceLocation& where)
-    : file_(file), where_(where), stream_(file, std::ios::binary) {
-    const int reason = errno;
-    std::error_code error;
-    if (!stream_)
-        throw IoError(fmt::format("{}: cannot open '{}': {}", where, file.string(),
-                                  std::generic_category().message(reason)));
-    if (!std::filesystem::is_regular_file(file, error))
-        throw IoError(fmt::format("{}: cannot open '{}': not a file", where, file.string()));
-    remember_input(file);
+    : file_(file),
+      where_(where),
+      stream_(open_input(file, fmt::format("{}: '{}'", where, file.string()), "volume")) {
     size_ = static_cast<std::int64_t>(std::filesystem::file_size(file));
 }
 

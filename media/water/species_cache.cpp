@@ -104,7 +104,7 @@ void keep_species_in(const fs::path& folder) {
 std::optional<std::vector<double>> kept_results(const std::string& key, std::size_t count) {
     const fs::path folder = usable_folder();
     if (folder.empty()) return {};
-    std::ifstream file(file_of(folder, key), std::ios::binary);
+    std::ifstream file = open_own_file(file_of(folder, key));
     std::string bytes(k_most_bytes, '\0');
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<std::size_t>(file.gcount()));

@@ -142,8 +142,8 @@ TEST_F(CalibrationCommand, RefusesInOneLine) {
     expect_failure({"calibration", file, "--to", "opencv"}, 2, "have no ports; write calibmar");
     expect_failure({"calibration", file, "--to", "colmp"}, 2, "did you mean 'colmap'?");
     expect_failure({"calibration", file, "-o", "x.txt"}, 2, "--to");
-    expect_failure({"calibration", file, "--to", "calibmar", "-o", file}, 2,
-                   "would replace the calibration");
+    expect_failure({"calibration", file, "--to", "calibmar", "-o", file}, 4,
+                   "it is a file that this run reads");
     expect_failure({"calibration", file, "--to", "scene", "--json"}, 2, "give -o");
     expect_failure({"calibration", "scene.yaml", "--camera", "cam0"}, 2, "a scene has one camera");
     expect_failure({"calibration", "none.yaml"}, 4, "no such file");

@@ -19,8 +19,8 @@ struct FakeArguments {
 
 Command fake_command(FakeArguments& a) {
     Command command{"render", "render it's [all]: everything", "Examples:", {}, {}};
-    command.options.path("SCENE", "", a.scene, "scene file");
-    command.options.path("-o,--output", "OUT.exr", a.output, "where to");
+    command.options.input("SCENE", "", a.scene, "scene file");
+    command.options.output("-o,--output", "OUT.exr", a.output, "where to");
     Option& integrator = command.options.text("--integrator", "NAME", a.integrator, "which [one]");
     integrator.value = Option::Value::word;
     integrator.words = {"volume", "planes", "reference"};

@@ -31,7 +31,7 @@ TEST(EditCommand, WhatIsWrongIsOneLine) {
     const SceneFolder folder;
     const ProgramResult missing = run_program({"edit", "none.yaml", "--no-browser"});
     EXPECT_EQ(missing.exit_code, 4);
-    EXPECT_EQ(missing.err, "uwvdb: none.yaml: no such file; name a scene\n");
+    EXPECT_EQ(missing.err, "uwvdb: none.yaml: no such file; check the name of the scene\n");
     EXPECT_EQ(run_program({"edit"}).exit_code, 2);
     EXPECT_EQ(run_program({"edit", "x.yaml", "--port", "70000"}).exit_code, 2);
     const std::string scene = folder.write("rig.yaml", k_edit_scene).string();

@@ -1,6 +1,7 @@
 // ctest labels: unit
 // What species were computed to be is kept in the user's cache folder for the next run.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
 
@@ -39,6 +40,23 @@ TEST_F(KeptSpecies, AreReadAgainAndReplacedWhereDamaged) {
     const auto mended = run(k_table);
     EXPECT_EQ(mended.out, first.out);
     EXPECT_EQ(test::file_bytes(one), whole);
+}
+
+// Nor waited for: nobody writes to the pipe, and the device never ends.
+TEST_F(KeptSpecies, AreComputedAgainWherePipesAndDevicesStand) {
+    const auto first = run(k_table);
+    ASSERT_EQ(first.exit_code, 0) << first.err;
+    const std::vector<std::filesystem::path> files = kept();
+    ASSERT_EQ(files.size(), 3U);
+    for (const auto& file : files) std::filesystem::remove(file);
+    ASSERT_EQ(::mkfifo(files[0].c_str(), 0600), 0);
+    std::filesystem::create_symlink("/dev/zero", files[1]);
+    std::filesystem::create_directory(files[2]);
+    const auto again =
+        test::run_program(k_table, {.folder = folder_.path(), .timeout_seconds = 60});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(again.out, first.out);
+    EXPECT_TRUE(std::filesystem::is_fifo(files[0]));
 }
 
 TEST_F(KeptSpecies, AreNotLookedForWhereInputsAreConfined) {

@@ -11,7 +11,7 @@ TEST(ManualPage, ListsCommandsOptionsAndExitCodes) {
     bool quiet = false;
     std::vector<Command> commands;
     commands.push_back({"render", "render a scene", "Examples:\n  uwvdb render a.yaml", {}, {}});
-    commands.front().options.path("SCENE", "", scene, "scene file").required = true;
+    commands.front().options.input("SCENE", "", scene, "scene file").required = true;
     commands.front().options.flag("--quiet", quiet, "be quiet");
     const std::string page = manual_page(commands);
     EXPECT_TRUE(page.starts_with(".TH UWVDB 1 ")) << page;

@@ -35,7 +35,7 @@ TEST(Options, WriteToTheirVariables) {
     Options options;
     options.flag("--quiet", quiet, "say nothing");
     options.text("--layers", "NAMES", layers, "which");
-    options.path("-o,--output", "FILE", output, "where");
+    options.output("-o,--output", "FILE", output, "where");
     options.integer("--samples", "N", samples, 1, 4096, "how many");
     options.number("--tolerance", "R", tolerance, 0, 1, "how close");
     options.set(overrides);
@@ -77,9 +77,9 @@ TEST(Options, RefuseWhatIsNoNumberInRange) {
 TEST(Options, AreFoundByTheirLongNames) {
     std::filesystem::path file;
     Options options;
-    EXPECT_EQ(options.path("-o,--output", "FILE", file, "").name(), "--output");
-    EXPECT_EQ(options.path("--stats", "FILE", file, "").name(), "--stats");
-    const Option& scene = options.path("SCENE", "", file, "");
+    EXPECT_EQ(options.output("-o,--output", "FILE", file, "").name(), "--output");
+    EXPECT_EQ(options.output("--stats", "FILE", file, "").name(), "--stats");
+    const Option& scene = options.input("SCENE", "", file, "");
     EXPECT_EQ(scene.name(), "SCENE");
     EXPECT_TRUE(scene.is_positional());
     EXPECT_FALSE(options.all().front().is_positional());

@@ -70,7 +70,7 @@ class InputFiles : public testing::Test {
     std::multiset<std::string> names_of(const SceneDesc& scene,
                                         const ImageChoice& choice = {}) const {
         std::multiset<std::string> names;
-        MeshSideFiles known;
+        SideFiles known;
         for (const InputFile& input : input_files(scene, choice, known))
             names.insert(input.file.lexically_relative(folder_.path()).string());
         return names;
@@ -81,19 +81,16 @@ class InputFiles : public testing::Test {
 
 TEST_F(InputFiles, AreAllThatASceneNames) {
     const SceneDesc scene = load_scene(folder_.path() / "scene.yaml", {});
-    EXPECT_EQ(names_of(scene, {1}),
-              (std::multiset<std::string>{"scene.yaml",         "rig.yaml",
-                                          "rig.yaml",           "rig.yaml",
-                                          "water.csv",          "smoke_0001.vdb",
-                                          "wind_0001.vdb",      "smoke.csv",
-                                          "wall.obj",           "sub/ship_0001.gltf",
-                                          "sub/ship one.bin",   "sub/hull.png",
-                                          "lamp.ies",           "spectrum.csv",
-                                          "camera.csv",         "white.csv",
-                                          "sizes.csv",          "quartz.csv",
-                                          "film.csv",           "mud.csv",
-                                          "mud-absorption.csv", "ctd.csv"}));
-    MeshSideFiles known;
+    EXPECT_EQ(
+        names_of(scene, {1}),
+        (std::multiset<std::string>{"scene.yaml",       "rig.yaml",           "rig.yaml",
+                                    "water.csv",        "smoke_0001.vdb",     "wind_0001.vdb",
+                                    "smoke.csv",        "wall.obj",           "sub/ship_0001.gltf",
+                                    "sub/ship one.bin", "sub/hull.png",       "lamp.ies",
+                                    "spectrum.csv",     "camera.csv",         "white.csv",
+                                    "sizes.csv",        "quartz.csv",         "film.csv",
+                                    "mud.csv",          "mud-absorption.csv", "ctd.csv"}));
+    SideFiles known;
     for (const InputFile& input : input_files(scene, {}, known)) {
         const std::string name = input.file.filename().string();
         EXPECT_EQ(input.is_hashed, name == "scene.yaml" || name == "rig.yaml") << name;

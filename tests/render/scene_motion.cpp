@@ -97,7 +97,7 @@ TEST_F(Motion, FramesMayBeTheTrajectorysOwnPoses) {
               }).find("lamps[0].trajectory: has no pose for frame 3, at 2.5 s"),
               std::string::npos);
     // A trajectory's file is an input whose content is in the hash.
-    MeshSideFiles known;
+    SideFiles known;
     const std::vector<InputFile> inputs = input_files(scene, {}, known);
     const auto found = std::ranges::find(inputs, file, &InputFile::file);
     ASSERT_NE(found, inputs.end());

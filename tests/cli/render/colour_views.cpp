@@ -183,7 +183,7 @@ TEST_F(ColourViews, AreRefusedInOneLineThatSaysWhatThereIs) {
     const test::ProgramResult result =
         run_with_ocio("nowhere.ocio", {"render", "scene.yaml", "-o", "out.exr"});
     EXPECT_EQ(result.exit_code, 4);
-    EXPECT_NE(result.err.find("OCIO: 'nowhere.ocio': no such OpenColorIO config"),
+    EXPECT_NE(result.err.find("OCIO: 'nowhere.ocio': no such file; check the name of the Open"),
               std::string::npos)
         << result.err;
     EXPECT_EQ(test::line_count(result.err), 1);

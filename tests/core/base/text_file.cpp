@@ -61,11 +61,13 @@ TEST(TextFile, IsNoDevice) {
               "IoError scene.yaml: lamps[0].file: is a device; name the IES file");
 }
 
-TEST(TextFile, IsWhatAPipeBrings) {
+TEST(TextFile, IsWhatAPipeBringsWhereItMay) {
     const test::TempDir folder;
     ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    EXPECT_EQ(text_file_failure(folder / "pipe"),
+              "IoError scene.yaml: lamps[0].file: is a pipe; name the IES file");
     // Nobody writes, and nobody waits.
-    EXPECT_EQ(read_text_file(folder / "pipe", "pipe", k_limit, "text"), "");
+    EXPECT_EQ(read_text_file(folder / "pipe", "pipe", k_limit, "text", Pipes::read), "");
     int ends[2];
     ASSERT_EQ(::pipe(ends), 0);
     const std::string text(k_limit, 'x');  // more than a pipe holds
@@ -74,9 +76,26 @@ TEST(TextFile, IsWhatAPipeBrings) {
             if (::write(ends[1], &text[at], 4096) != 4096) break;
         ::close(ends[1]);
     });
-    EXPECT_EQ(read_text_file("/dev/fd/" + std::to_string(ends[0]), "pipe", k_limit, "text"), text);
+    EXPECT_EQ(
+        read_text_file("/dev/fd/" + std::to_string(ends[0]), "pipe", k_limit, "text", Pipes::read),
+        text);
     writer.join();
     ::close(ends[0]);
+}
+
+TEST(OwnFile, IsNeitherAPipeNorADeviceAndNoInput) {
+    const test::TempDir folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    for (const std::filesystem::path& file :
+         {folder / "pipe", folder / "none", folder.path(), std::filesystem::path("/dev/zero")})
+        EXPECT_FALSE(open_own_file(file)) << file;
+    std::ofstream(folder / "own.txt") << "text";
+    std::string word;
+    EXPECT_TRUE(open_own_file(folder / "own.txt") >> word);
+    EXPECT_EQ(word, "text");
+    EXPECT_FALSE(is_input(folder / "own.txt"));
+    EXPECT_TRUE(open_input(folder / "own.txt", "own.txt", "text"));
+    EXPECT_TRUE(is_input(folder / "own.txt"));
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ class PhaseReader : public ::testing::Test {
   protected:
     PhaseDesc read(const std::string& text) const {
         const ConfigNode node = parse_yaml(text, "scene.yaml");
-        return read_phase(ConfigValue(node, "phase"), context_);
+        return read_phase(ConfigValue(node, "water.scattering.phase"), context_);
     }
 
     test::SceneFolder folder_;
@@ -36,7 +36,7 @@ TEST_F(PhaseReader, ReadsEachType) {
     const std::filesystem::path file = folder_.write("phase.csv", "angle_deg,phase\n");
     EXPECT_EQ(read("{type: table, file: phase.csv}").function,
               PhaseFunctionDesc(TabulatedPhaseDesc{file}));
-    EXPECT_EQ(read("{type: petzold}").where, "scene.yaml:1:1: phase");
+    EXPECT_EQ(read("{type: petzold}").where, "scene.yaml:1:1: water.scattering.phase");
 }
 
 TEST_F(PhaseReader, TwoSpellingsOfAFileAreEqual) {
@@ -52,9 +52,10 @@ TEST_F(PhaseReader, NamesAllTypes) {
         read("{type: isotropic}");
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(),
-                     "scene.yaml:1:8: phase.type: unknown value 'isotropic'; use one of: hg, "
-                     "fournier-forand, petzold, table, water");
+        EXPECT_STREQ(
+            error.what(),
+            "scene.yaml:1:8: water.scattering.phase.type: unknown value 'isotropic'; use one "
+            "of: hg, fournier-forand, petzold, table, water");
     }
 }
 

@@ -19,7 +19,7 @@ class WavesReader : public ::testing::Test {
   protected:
     WavesDesc read(const std::string& text) const {
         const ConfigNode node = parse_yaml(text, "scene.yaml");
-        return read_waves(ConfigValue(node, "waves"), context_);
+        return read_waves(ConfigValue(node, "water.surface.waves"), context_);
     }
     void expect_refused(const std::string& text, const std::string& part) const {
         const std::string message = message_of<InputError>([&] { read(text); });

@@ -85,11 +85,12 @@ TEST(ByteReader, BelievesNoAbsurdText) {
 TEST(ByteReader, ThatCannotOpenSaysWhy) {
     const test::SceneFolder folder;
     const auto missing = folder.path() / "none.vdb";
+    EXPECT_EQ(test::message_of<IoError>([&] { ByteReader(missing, k_volume_entry); }),
+              k_volume_entry + ": '" + missing.string() +
+                  "': no such file; check the name of the volume");
     EXPECT_EQ(
-        test::message_of<IoError>([&] { ByteReader(missing, k_volume_entry); }),
-        k_volume_entry + ": cannot open '" + missing.string() + "': No such file or directory");
-    EXPECT_EQ(test::message_of<IoError>([&] { ByteReader(folder.path(), k_volume_entry); }),
-              k_volume_entry + ": cannot open '" + folder.path().string() + "': not a file");
+        test::message_of<IoError>([&] { ByteReader(folder.path(), k_volume_entry); }),
+        k_volume_entry + ": '" + folder.path().string() + "': is a folder; name the volume in it");
 }
 
 }  // namespace
