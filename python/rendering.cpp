@@ -128,6 +128,7 @@ py::dict report(const ImageObject& image) {
     dict["samples"] = r.paths.samples;
     dict["error"] = r.paths.error;
     dict["multiple_error"] = r.multiple_error;
+    dict["multiple_error_of_bands"] = r.multiple_error_of_bands;
     dict["exposure_parts"] = r.exposure_parts;
     dict["colour_groups"] = r.colour_groups;
     dict["motion_pixels"] = r.motion_pixels;
@@ -158,7 +159,8 @@ py::tuple report_state(const RenderReport& r) {
                           r.warnings, r.motion_pixels,
                           std::array{r.pixels, r.camera_rays, r.splat_rays, r.light_bytes,
                                      r.active_voxels, r.grid_bytes, r.triangles, r.lamps, r.bands,
-                                     r.exposure_parts, r.exposure_samples, r.colour_groups});
+                                     r.exposure_parts, r.exposure_samples, r.colour_groups},
+                          r.multiple_error_of_bands);
 }
 
 RenderReport report_of_state(const py::tuple& state) {
@@ -168,6 +170,7 @@ RenderReport report_of_state(const py::tuple& state) {
     r.snow_particles = state[3].cast<std::uint64_t>();
     r.warnings = state[4].cast<std::vector<std::string>>();
     r.motion_pixels = state[5].cast<double>();
+    r.multiple_error_of_bands = state[7].cast<std::vector<double>>();
     const auto counts = state[6].cast<std::array<std::uint64_t, 12>>();
     std::size_t next = 0;
     for (std::uint64_t* count : {&r.pixels, &r.camera_rays, &r.splat_rays, &r.light_bytes,

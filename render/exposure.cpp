@@ -277,7 +277,7 @@ class ReachedByParts {
     void add(const ImageProgress& part) {
         samples_ += part.paths.samples;
         if (part.paths.error) squares_ += *part.paths.error * *part.paths.error;
-        multiple_ = std::max(multiple_, part.multiple_error.value_or(0));
+        fast_.include_multiple_error(part);
         snow_ = std::max(snow_, part.snow_particles);
     }
     void tell(int parts, int samples_of_pixel, ImageProgress& reached) const {
@@ -285,13 +285,14 @@ class ReachedByParts {
             reached.paths = {samples_of_pixel, {}};
             if (squares_ > 0) reached.paths.error = std::sqrt(squares_) / parts;
         }
-        if (multiple_ > 0) reached.multiple_error = multiple_;
+        reached.include_multiple_error(fast_);
         reached.snow_particles = snow_;
     }
 
   private:
     int samples_ = 0;
-    double squares_ = 0, multiple_ = 0;
+    double squares_ = 0;
+    ImageProgress fast_;      // its stated errors
     std::uint64_t snow_ = 0;  // particles of the part with the most
 };
 
@@ -309,7 +310,11 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
     const PassNeeds needs = passes.needs(plan);
     const int parts = exposure.part_count();
     ReachedByParts reached_by_parts;
-    ExposureMean mean(plan, rendering.colour, film);
+    // The nodes of the fast form have the same random numbers in every part.
+    const ExposureMean::Errors errors = integrator_kind(desc.render.integrator).traces_paths
+                                            ? ExposureMean::Errors::independent
+                                            : ExposureMean::Errors::alike;
+    ExposureMean mean(plan, rendering.colour, errors, film);
     const Camera truth_camera = camera_of_truth(scene.image);
     const auto find_truth = [&](const AssembledScene& then, const LightTransport& transport,
                                 const std::function<bool(int row)>& has_truth) {

@@ -195,7 +195,10 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
     ImageMetadata m = metadata_of(scene.image, frame, paths);
     if (report.paths.samples > 0) m["uwvdb/samples"] = static_cast<double>(report.paths.samples);
     if (report.paths.error) m["uwvdb/error"] = *report.paths.error;
-    if (report.multiple_error) m["uwvdb/multiple_error"] = *report.multiple_error;
+    if (report.multiple_error) {
+        m["uwvdb/multiple_error"] = *report.multiple_error;
+        m["uwvdb/multiple_error_of_bands"] = band_list(report.multiple_error_of_bands);
+    }
     if (report.exposure_parts > 0) {
         m["uwvdb/exposure_parts"] = static_cast<double>(report.exposure_parts);
         m["uwvdb/exposure_samples"] = static_cast<double>(report.exposure_samples);

@@ -166,12 +166,14 @@ void Renderer::warn_of_error(const PathRequest& request) {
 }
 
 void Renderer::warn_of_multiple_error() {
-    const bool is_draft = scene_->desc().render.quality == RenderDesc::Quality::draft;
-    if (is_draft || !(report_.multiple_error > k_most_multiple_error)) return;
+    const RenderDesc::Quality quality = scene_->desc().render.quality;
+    if (quality == RenderDesc::Quality::draft || !(report_.multiple_error > k_most_multiple_error))
+        return;
+    const char* const better = quality == RenderDesc::Quality::exact ? "" : "--quality exact, or ";
     report_.warnings.push_back(fmt::format(
         "multiple scattering: its standard error is {:.2g} % of the image's mean; for less, use "
-        "--quality exact, or --integrator path with --error 0.02{}",
-        100 * *report_.multiple_error, see_troubleshooting("Blotches, grain and spots")));
+        "{}--integrator path with --error 0.02{}",
+        100 * *report_.multiple_error, better, see_troubleshooting("Blotches, grain and spots")));
 }
 
 ProgressCallback Renderer::progress_of_group(std::size_t group, std::size_t groups) const {

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <span>
 #include <utility>
 
 #include "cli/console.h"
@@ -19,6 +22,24 @@
 namespace uw {
 
 namespace {
+
+// The errors of some bands one by one, those of many by their range; nothing of a single one.
+std::string describe_bands(std::span<const double> errors, std::span<const double> bands_nm) {
+    constexpr std::array k_colours{"red", "green", "blue"};  // LayerPlan's R, G and B
+    constexpr std::size_t k_most = 6;
+    if (errors.size() < 2) return "";
+    if (errors.size() > k_most) {
+        const auto [least, most] = std::ranges::minmax(errors);
+        return fmt::format(" ({:.2g} to {:.2g} % of the bands')", 100 * least, 100 * most);
+    }
+    std::string text;
+    for (std::size_t b = 0; b < errors.size(); ++b) {
+        const std::string band =
+            errors.size() == k_colours.size() ? k_colours[b] : fmt::format("{:g} nm", bands_nm[b]);
+        text += fmt::format("{}{} {:.2g}", b == 0 ? "" : ", ", band, 100 * errors[b]);
+    }
+    return fmt::format(" ({} % of the bands')", text);
+}
 
 // "64 samples, error 1.83 %"; empty if no light paths have been traced.
 std::string describe(const PathAccuracy& reached) {
@@ -163,7 +184,10 @@ void FrameRenderer::count_work(const RenderReport& report) {
     if (report.exposure_parts > 0) stats_.count("exposure_parts", report.exposure_parts);
     if (report.colour_groups > 1) stats_.count("colour_groups", report.colour_groups);
     if (report.exposure_parts > 0) stats_.measure("motion_pixels", report.motion_pixels);
-    if (report.multiple_error) stats_.measure("multiple_error", *report.multiple_error);
+    if (report.multiple_error) {
+        stats_.measure("multiple_error", *report.multiple_error);
+        stats_.measure("multiple_error_of_bands", report.multiple_error_of_bands);
+    }
     if (report.paths.samples == 0) return;
     stats_.count("samples", static_cast<std::uint64_t>(report.paths.samples));
     if (report.paths.error) stats_.measure("error", *report.paths.error);
@@ -185,8 +209,10 @@ ImageWork FrameRenderer::take(std::size_t place, FinishedImage image) {
     if (report.paths.samples > 0)
         say(fmt::format("{} of the image's mean", describe(report.paths)));
     if (report.multiple_error)
-        say(fmt::format("multiple scattering: standard error {:.2g} % of the image's mean",
-                        100 * *report.multiple_error));
+        say(fmt::format("multiple scattering: standard error {:.2g} % of the image's mean{}",
+                        100 * *report.multiple_error,
+                        describe_bands(report.multiple_error_of_bands,
+                                       engine_.renderer().scene().desc().water.bands_nm)));
     if (!report.light_note.empty()) say("note: " + report.light_note);
     count_work(report);
     OutputGroup outputs;

@@ -42,6 +42,10 @@ void RunStats::measure(const std::string& name, double value) {
     measures_.emplace_back(name, value);
 }
 
+void RunStats::measure(const std::string& name, std::vector<double> values) {
+    lists_.emplace_back(name, std::move(values));
+}
+
 double RunStats::total_seconds() const {
     double total = 0;
     for (const auto& [name, seconds] : stages_) total += seconds;
@@ -84,6 +88,7 @@ struct StatsJson {
         json["seconds"]["total"] = stats.total_seconds();
         for (const auto& [name, value] : stats.counts_) json[name] = value;
         for (const auto& [name, value] : stats.measures_) json[name] = value;
+        for (const auto& [name, values] : stats.lists_) json[name] = values;
         for (const PartNumbers& row : stats.numbers_) {
             Json& numbers = json["numbers"].emplace_back();
             numbers["part"] = row.part;

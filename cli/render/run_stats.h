@@ -28,6 +28,8 @@ class RunStats {
     void count(const std::string& name, std::uint64_t value);
     /// Adds a number that is no count.
     void measure(const std::string& name, double value);
+    /// Adds one such number per band.
+    void measure(const std::string& name, std::vector<double> values);
 
     double total_seconds() const;
     /// Largest resident memory of the process so far [bytes].
@@ -57,6 +59,7 @@ class RunStats {
     std::vector<std::pair<std::string, double>> stages_;
     std::vector<std::pair<std::string, std::uint64_t>> counts_;
     std::vector<std::pair<std::string, double>> measures_;
+    std::vector<std::pair<std::string, std::vector<double>>> lists_;
     std::vector<PartNumbers> numbers_;
     std::string output_;
     std::optional<int> frame_;

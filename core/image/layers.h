@@ -92,7 +92,9 @@ inline constexpr std::string_view
         "the scene is rendered with single scattering; write --set render.scattering=multiple, or "
         "--integrator path",
     k_snow = "there is no snow in the scene; add water.snow",
-    k_error = "only --integrator path has a standard error, from two samples on; write that",
+    k_error =
+        "only all light has a standard error; write --set render.scattering=multiple, or "
+        "--integrator path with at least two samples",
     k_sensor = "the camera has no sensor; add camera.sensor to the scene",
     k_flow = "other frames are those of a sequence; give its --frames",
     k_disparity = "needs a rig of at least two cameras; give cameras: a list of them";

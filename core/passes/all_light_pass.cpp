@@ -8,6 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
+#include "core/passes/in_scatter_lattice.h"
 #include "core/paths/indirect_light.h"
 #include "core/paths/multiple_nodes.h"
 #include "core/paths/node_lattice.h"
@@ -18,8 +19,12 @@ namespace uw {
 
 namespace {
 
-constexpr int k_least_spacing = 4;
-constexpr double k_most_numbers = 1e7;  // kept, for the whole image
+// Pixels between rays: as many as leave rays enough to tell where particles begin, and no more
+// numbers to be kept for the whole image than these.
+constexpr int k_enough_spacing = 4;
+constexpr double k_enough_rays = 8000;
+constexpr double k_most_numbers = 1e7;
+constexpr double k_middle = 0.5;  // of pixels, where their rays in the water are
 
 }  // namespace
 
@@ -27,19 +32,23 @@ WeightLattice::WeightLattice(const RaySource& rays, const IntervalWeights& weigh
                              const PixelWindow& window)
     : uniform_(weights.of_uniform_water()) {
     if (!weights.vary()) return;
-    const double numbers =
-        static_cast<double>(rays.width()) * rays.height() * static_cast<double>(uniform_.size());
-    spacing_ =
-        std::max(k_least_spacing, static_cast<int>(std::ceil(std::sqrt(numbers / k_most_numbers))));
+    const double pixels = static_cast<double>(rays.width()) * rays.height();
+    const double numbers = pixels * static_cast<double>(uniform_.size());
+    spacing_ = std::max(
+        std::clamp(static_cast<int>(std::sqrt(pixels / k_enough_rays)), 1, k_enough_spacing),
+        static_cast<int>(std::ceil(std::sqrt(numbers / k_most_numbers))));
     column_ = window.x0 / spacing_;
     row_ = window.y0 / spacing_;
-    const int columns = (window.x1 + spacing_ - 1) / spacing_ - column_ + 1;
-    const int rows = (window.y1 + spacing_ - 1) / spacing_ - row_ + 1;
+    const auto steps = [&](int first, int end) {
+        return std::max(2, (end - 1 + spacing_ - 1) / spacing_ - first + 1);
+    };
+    const int columns = steps(column_, window.x1), rows = steps(row_, window.y1);
     rays_.assign(columns, rows);
     parallel_for(rays_.size(), [&](std::size_t at) {
         const int i = static_cast<int>(at) % columns, j = static_cast<int>(at) / columns;
-        const auto ray = rays.refracted_ray((column_ + i) * static_cast<double>(spacing_),
-                                            (row_ + j) * static_cast<double>(spacing_));
+        const auto ray =
+            rays.refracted_ray(k_middle + (column_ + i) * static_cast<double>(spacing_),
+                               k_middle + (row_ + j) * static_cast<double>(spacing_));
         if (ray)
             weights.find(*ray, rays_[at]);
         else
@@ -52,7 +61,7 @@ void WeightLattice::find(double x, double y, std::vector<float>& weights) const 
         weights = uniform_;
         return;
     }
-    const double u = x / spacing_ - column_, v = y / spacing_ - row_;
+    const double u = (x - k_middle) / spacing_ - column_, v = (y - k_middle) / spacing_ - row_;
     const int i = std::clamp(static_cast<int>(u), 0, rays_.width() - 2);
     const int j = std::clamp(static_cast<int>(v), 0, rays_.height() - 2);
     weights.assign(uniform_.size(), 0.0F);
@@ -161,12 +170,9 @@ class MultipleLight {
     void prepare(const PixelWindow& window, const ShareCallback& progress);
 
     /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`. The
-    /// samples of `view` begin at `first_sample` of `light`. Thread safe.
+    /// samples of `view` begin at `first_sample` of `light`. Sets the error. Thread safe.
     void add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
              PixelResult& result) const;
-
-    /// The standard error of this light (NodeLattice::error).
-    double error() const { return error_; }
 
   private:
     struct Corner {
@@ -180,10 +186,14 @@ class MultipleLight {
                       std::vector<Corner>& matches) const;
     void find_matches(double x, double y, const SurfaceHit& hit, double least_cosine,
                       std::vector<Corner>& matches) const;
-    void add_water(const PixelView& view, std::span<double> light) const;
-    void add_volume(const PixelView& view, PixelResult& result) const;
+    struct Errors;
+
+    double share_of_glow(double scattered, double distance, std::size_t band) const;
+    void spread_glow(const MultipleNode& node, std::span<float> glow) const;
+    void add_water(const PixelView& view, std::span<double> light, Errors& errors) const;
+    void add_volume(const PixelView& view, PixelResult& result, Errors& errors) const;
     void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
-                     PixelResult& result) const;
+                     PixelResult& result, Errors& errors) const;
     void give(std::size_t group, std::size_t band, double radiance, PixelResult& result) const;
 
     const PixelRenderer& pixels_;
@@ -196,7 +206,25 @@ class MultipleLight {
     WeightLattice weight_lattice_;  // from prepare on, as the following
     Grid2D<SmoothNode> nodes_;
     std::optional<SurfaceGlow> glow_;
-    double error_ = 0;
+};
+
+/// Standard errors of a pixel's light, by band.
+struct MultipleLight::Errors {
+    Spectrum water;     // of what nodes tell of the water
+    Spectrum surfaces;  // of the indirect light on surfaces, seen directly or through scattering
+    // Of what glossy surfaces mirror, by paths of the pixel's own: sums of their light and of its
+    // squares.
+    Spectrum mirrored, mirrored_squares;
+    double mirrored_paths = 0;
+
+    double of_band(std::size_t b) const {
+        const double sum = mirrored[b];
+        const double spread =
+            mirrored_paths > 1 ? std::max(0.0, mirrored_squares[b] - sum * sum / mirrored_paths) *
+                                     mirrored_paths / (mirrored_paths - 1)
+                               : 0;
+        return std::sqrt(water[b] * water[b] + surfaces[b] * surfaces[b] + spread);
+    }
 };
 
 MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options)
@@ -231,7 +259,7 @@ void MultipleLight::prepare(const PixelWindow& window, const ShareCallback& prog
     take_away_glow(lattice, indirect);
     weight_lattice_ = WeightLattice(rays, weights_, window);
     nodes_ = lattice.smoothed(nodes, intervals_);
-    error_ = lattice.error(nodes_, nodes);
+    lattice.find_errors(nodes, nodes_);
 }
 
 // Computes the glow, and leaves in the nodes what they hold beside it.
@@ -250,10 +278,13 @@ void MultipleLight::take_away_glow(NodeLattice& lattice, const IndirectLight& in
     glow_.emplace(pixels_.rays(), pixels_.scene(), *pixels_.transport().surfaces, intervals_,
                   groups * bands_, options_.cells, radiance, positions);
     const std::size_t values = groups * bands_;
+    std::vector<float> glow;
     for (std::size_t n = 0; n < raw.size(); ++n) {
         MultipleNode& node = raw[n];
-        if (node.water_variance.empty()) continue;  // no ray, or outside the window
-        const std::span<const float> glow = glow_->of_node(n);
+        if (node.weights.empty()) continue;  // no ray, or outside the window
+        const std::span<const float> of_node = glow_->of_node(n);
+        glow.assign(of_node.begin(), of_node.end());
+        if (glow_->is_of_mean_water()) spread_glow(node, glow);
         for (std::size_t i = 0; i < glow_->interval_count(); ++i) {
             if (intervals_.begin(i) >= node.reach) break;
             for (NodeLight& half : node.halves) {
@@ -265,6 +296,36 @@ void MultipleLight::take_away_glow(NodeLattice& lattice, const IndirectLight& in
                 half.water_mean[i] -= mean / static_cast<float>(bands_);
             }
         }
+    }
+}
+
+// How much of the glow of water as it is in the mean belongs to a ray, whose water scatters
+// `scattered` of even light up to `distance`.
+double MultipleLight::share_of_glow(double scattered, double distance, std::size_t band) const {
+    if (!glow_->is_of_mean_water()) return 1;
+    const double mean = glow_->scattered_by_mean_water(distance, band);
+    return mean > 0 ? std::min(1.0, scattered / mean) : 1;
+}
+
+// Of glow in water as it is in the mean, leaves what pixels of the node's ray have of it, where
+// that ray scatters light: nodes cannot hold any where it does not.
+void MultipleLight::spread_glow(const MultipleNode& node, std::span<float> glow) const {
+    const std::size_t values = estimator_.groups() * bands_;
+    for (std::size_t k = 0; k < values; ++k) {
+        const std::size_t band = k % bands_;
+        double all = 0, scattered = 0;
+        const auto for_each = [&](const auto& visit) {
+            for (std::size_t i = 0; i < glow_->interval_count(); ++i)
+                if (intervals_.begin(i) < node.reach)
+                    visit(glow[i * values + k],
+                          static_cast<double>(node.weights[i * bands_ + band]));
+        };
+        for_each([&](float& light, double weight) {
+            all += static_cast<double>(light);
+            scattered += weight;
+        });
+        if (scattered > 0) all *= share_of_glow(scattered, node.reach, band) / scattered;
+        for_each([&](float& light, double weight) { light = static_cast<float>(all * weight); });
     }
 }
 
@@ -284,14 +345,18 @@ void MultipleLight::give(std::size_t group, std::size_t band, double radiance,
     if (group < result.lamps.size()) result.lamps[group][band] += radiance;
 }
 
-void MultipleLight::add_water(const PixelView& view, std::span<double> light) const {
+void MultipleLight::add_water(const PixelView& view, std::span<double> light,
+                              Errors& errors) const {
     thread_local std::vector<Corner> corners;
     thread_local std::vector<float> weights;
+    thread_local std::vector<double> glow;
+    Spectrum scattered{};  // of even light by the water that is known
     weight_lattice_.find(view.x, view.y, weights);
     find_corners(view.x, view.y, corners);
     const std::size_t intervals = intervals_.count();
     const std::size_t groups = estimator_.groups();
     for (std::size_t d = 0; d < view.distances.size(); ++d) {
+        Spectrum up_to_distance{};
         for (std::size_t interval = 0; interval < intervals; ++interval) {
             const double begin = intervals_.begin(interval);
             if (begin >= view.distances[d]) break;
@@ -300,9 +365,10 @@ void MultipleLight::add_water(const PixelView& view, std::span<double> light) co
                 if (corner.node->known_to > begin) total += corner.weight;
             if (!(total > 0)) break;
             for (std::size_t b = 0; b < bands_; ++b) {
-                const double share = view.weights[d] / total *
-                                     static_cast<double>(weights[interval * bands_ + b]) *
-                                     intervals_.share(interval, b, view.distances[d]);
+                const double weight = static_cast<double>(weights[interval * bands_ + b]) *
+                                      intervals_.share(interval, b, view.distances[d]);
+                const double share = view.weights[d] * weight / total;
+                up_to_distance[b] += weight;
                 for (std::size_t group = 0; group < groups; ++group) {
                     double sum = 0;
                     for (const Corner& corner : corners)
@@ -314,17 +380,30 @@ void MultipleLight::add_water(const PixelView& view, std::span<double> light) co
                 }
             }
         }
+        glow.assign(light.size(), 0.0);
+        glow_->add(view.x, view.y, view.distances[d], view.weights[d], glow);
+        for (std::size_t k = 0; k < light.size(); ++k)
+            light[k] +=
+                glow[k] * share_of_glow(up_to_distance[k % bands_], view.distances[d], k % bands_);
+        for (std::size_t b = 0; b < bands_; ++b)
+            scattered[b] += view.weights[d] * up_to_distance[b];
+    }
+    // Errors of neighbouring nodes, which were smoothed together, are alike.
+    for (std::size_t b = 0; b < bands_; ++b) {
+        for (const Corner& corner : corners) {
+            errors.water[b] +=
+                corner.weight * scattered[b] * static_cast<double>(corner.node->water_error[b]);
+            errors.surfaces[b] += corner.weight * static_cast<double>(corner.node->glow_error[b]);
+        }
     }
 }
 
 // What nodes hold beside the glow is a difference, and so noisy; light is not below zero.
-void MultipleLight::add_volume(const PixelView& view, PixelResult& result) const {
+void MultipleLight::add_volume(const PixelView& view, PixelResult& result, Errors& errors) const {
     thread_local std::vector<double> light;
     const std::size_t groups = estimator_.groups();
     light.assign(groups * bands_, 0.0);
-    add_water(view, light);
-    for (std::size_t d = 0; d < view.distances.size(); ++d)
-        glow_->add(view.x, view.y, view.distances[d], view.weights[d], light);
+    add_water(view, light, errors);
     for (std::size_t group = 0; group < groups; ++group) {
         for (std::size_t b = 0; b < bands_; ++b) {
             const double radiance = std::max(0.0, light[group * bands_ + b]);
@@ -372,23 +451,40 @@ void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit, doub
 }
 
 void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
-                                PixelResult& result) const {
+                                PixelResult& result, Errors& errors) const {
     thread_local std::vector<Corner> matches;
     thread_local SmoothNode own;
     find_matches(sample.x, sample.y, sample.hit, matches);
     if (matches.empty()) {
         // Too small for the lattice.
-        estimator_.estimate_surface(sample, k_paths_of_sample, own.light);
+        estimator_.estimate_surface(sample, k_paths_of_sample, own.light, own.surface_errors);
         matches.push_back({&own, 1});
     }
     double total = 0;
     for (const Corner& match : matches) total += match.weight;
     const SurfaceReflection reflection(*pixels_.scene().surfaces, sample, static_cast<int>(bands_));
-    thread_local std::vector<double> mirrored;
+    thread_local std::vector<double> mirrored, squares;
+    const int mirrored_paths = std::max(1, k_mirrored_paths / pixels_.samples());
     if (reflection.is_glossy())
-        estimator_.estimate_mirrored(sample, std::max(1, k_mirrored_paths / pixels_.samples()),
-                                     mirrored);
+        estimator_.estimate_mirrored(sample, mirrored_paths, mirrored, squares);
     const double weight = 1.0 / pixels_.samples();
+    for (std::size_t b = 0; b < bands_; ++b) {
+        double of_matches = 0;
+        for (const Corner& match : matches) {
+            const SurfaceErrors& of_node = match.node->surface_errors;
+            of_matches +=
+                match.weight * sample.hit.reflectance[b] * static_cast<double>(of_node.diffuse[b]);
+            if (b < of_node.glossy.size())
+                of_matches += match.weight * static_cast<double>(of_node.glossy[b]);
+        }
+        errors.surfaces[b] += weight * to_camera[b] * of_matches / total;
+        if (!reflection.is_glossy()) continue;
+        const double of_path = weight * to_camera[b] / mirrored_paths;
+        errors.mirrored_squares[b] += of_path * of_path * squares[b];
+        for (std::size_t k = b; k < mirrored.size(); k += bands_)
+            errors.mirrored[b] += weight * to_camera[b] * mirrored[k];
+    }
+    if (reflection.is_glossy()) errors.mirrored_paths += mirrored_paths;
     for (std::size_t group = 0; group < estimator_.groups(); ++group) {
         for (std::size_t b = 0; b < bands_; ++b) {
             double diffuse = 0, glossy = 0;
@@ -410,11 +506,72 @@ void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const dou
 void MultipleLight::add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
                         PixelResult& result) const {
     if (!view.ray) return;
-    add_volume(view, result);
+    Errors errors;
+    add_volume(view, result, errors);
     for (std::size_t i = 0; i < view.samples.size(); ++i)
         if (!view.samples[i].hit.is_water_surface)
-            add_surface(view.samples[i], light.to_camera(first_sample + i), result);
+            add_surface(view.samples[i], light.to_camera(first_sample + i), result, errors);
+    for (std::size_t b = 0; b < bands_; ++b)
+        result.error[b] = result.pixel_factor * errors.of_band(b);
 }
+
+/// Sums over the pixels of an image of all light and of the squares of its errors, by band: tile by
+/// tile, each of which one thread renders, so that they are the same to the bit for any number of
+/// threads. Thread safe for pixels of different tiles.
+class ErrorSums {
+  public:
+    ErrorSums(const PixelWindow& window, std::size_t bands) : window_(window), bands_(bands) {
+        tiles_.assign(1 + (window.x1 - 1) / k_tile - window.x0 / k_tile,
+                      1 + (window.y1 - 1) / k_tile - window.y0 / k_tile);
+        for (Tile& tile : tiles_) {
+            tile.light.assign(bands, 0.0);
+            tile.squares.assign(bands, 0.0);
+        }
+    }
+
+    void add(const RenderedPixel& pixel) {
+        Tile& tile =
+            tiles_(pixel.x / k_tile - window_.x0 / k_tile, pixel.y / k_tile - window_.y0 / k_tile);
+        const PixelResult& result = pixel.result;
+        for (std::size_t b = 0; b < bands_; ++b) {
+            tile.light[b] +=
+                result.pixel_factor * (result.direct[b] + result.backscatter[b] +
+                                       result.multiple_volume[b] + result.multiple_surface[b]);
+            tile.squares[b] += result.error[b] * result.error[b];
+        }
+    }
+
+    void tell(ImageProgress& reached) const {
+        const double pixels = static_cast<double>(window_.width()) * window_.height();
+        const auto relative = [](double light, double squares, double count) {
+            return light > 0 ? std::sqrt(squares * count) / light : 0;
+        };
+        double all_light = 0, all_squares = 0;
+        reached.multiple_error_of_bands.clear();
+        for (std::size_t b = 0; b < bands_; ++b) {
+            double light = 0, squares = 0;
+            for (const Tile& tile : tiles_) {
+                light += tile.light[b];
+                squares += tile.squares[b];
+            }
+            reached.multiple_error_of_bands.push_back(relative(light, squares, pixels));
+            all_light += light;
+            all_squares += squares;
+        }
+        reached.multiple_error =
+            relative(all_light, all_squares, pixels * static_cast<double>(bands_));
+    }
+
+  private:
+    static constexpr int k_tile = InScatterLattice::k_tile;  // of render_tiles
+    struct Tile {
+        std::vector<double> light, squares;
+    };
+
+    PixelWindow window_;
+    std::size_t bands_;
+    Grid2D<Tile> tiles_;
+};
 
 namespace {
 
@@ -456,14 +613,17 @@ PassNeeds AllLightPass::needs(const LayerPlan& /*plan*/) const {
 }
 
 void AllLightPass::provide(LayerSupply& supply) const {
-    supply.layers |= {Layer::multiple, Layer::multiple_volume, Layer::multiple_surface};
+    supply.layers |=
+        {Layer::multiple, Layer::multiple_volume, Layer::multiple_surface, Layer::error};
 }
 
 void AllLightPass::begin(Rendering& rendering) {
     light_.reset();
+    sums_.reset();
     if (!rendering.pixels.transport().paths || !has_light(rendering.pixels)) return;
     rendering.steps.emplace_back([this](const RenderedPixel& pixel) {
         light_->add(pixel.view, pixel.light, pixel.first_sample, pixel.result);
+        sums_->add(pixel);
     });
 }
 
@@ -475,7 +635,12 @@ void AllLightPass::run(Rendering& rendering) {
     options.lamps = rendering.plan.has_lamps();
     light_ = std::make_unique<MultipleLight>(rendering.pixels, options);
     light_->prepare(rendering.film.window(), rendering.progress_of(stage()));
-    rendering.reached.multiple_error = light_->error();
+    sums_ = std::make_unique<ErrorSums>(rendering.film.window(),
+                                        static_cast<std::size_t>(rendering.pixels.band_count()));
+}
+
+void AllLightPass::end(Rendering& rendering) {
+    if (sums_) sums_->tell(rendering.reached);
 }
 
 }  // namespace uw

@@ -11,8 +11,9 @@
 
 namespace uw {
 
-/// IntervalWeights all over a window of an image: found on rays of a lattice that depends on the
-/// whole image alone, linear in between. One set of weights serves uniform water.
+/// IntervalWeights all over a window of an image: found on rays of a lattice through the middles of
+/// pixels that depends on the whole image alone, linear in between. One set of weights serves
+/// uniform water.
 class WeightLattice {
   public:
     WeightLattice() = default;
@@ -39,9 +40,10 @@ class WeightLattice {
 /// crops hold the same pixels, and a still camera does not flicker.
 ///
 /// Each pixel's light is added to multiple_volume, multiple_surface and the lamps as it is
-/// rendered. The stated standard error (ImageProgress::multiple_error) is the RMS over the nodes
-/// over the mean of all light. A transport without light paths, which a caller may put in the place
-/// of the scene's, leaves this light out.
+/// rendered, and its standard error by band to `error`, interpolated between those of the nodes
+/// (NodeLattice::find_errors). What is stated of the image (ImageProgress::multiple_error) is the
+/// RMS of that over the pixels, over the mean of all light. A transport without light paths, which
+/// a caller may put in the place of the scene's, leaves this light out.
 class AllLightPass final : public Pass {
   public:
     /// `share`: PathRequest::share.
@@ -52,10 +54,12 @@ class AllLightPass final : public Pass {
     void provide(LayerSupply& supply) const override;
     void begin(Rendering& rendering) override;
     void run(Rendering& rendering) override;
+    void end(Rendering& rendering) override;
 
   private:
     double share_;
     std::unique_ptr<class MultipleLight> light_;  // of the pixels, from run on; none: it is dark
+    std::unique_ptr<class ErrorSums> sums_;       // over the pixels, from run on
 };
 
 }  // namespace uw

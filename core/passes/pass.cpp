@@ -10,6 +10,7 @@ PassNeeds Pass::needs(const LayerPlan& /*plan*/) const {
 void Pass::provide(LayerSupply& /*supply*/) const {}
 void Pass::prepare(const SceneDesc& /*scene*/, const LayerPlan& /*plan*/) {}
 void Pass::begin(Rendering& /*rendering*/) {}
+void Pass::end(Rendering& /*rendering*/) {}
 
 LayerSupply PassList::supply() const {
     LayerSupply supply;
@@ -42,6 +43,8 @@ void PassList::run(Pass::Of of, Rendering& rendering) {
         throw_if_stopped();
         pass->run(rendering);
     }
+    for (const auto& pass : passes_)
+        if (pass->of() == of) pass->end(rendering);
 }
 
 }  // namespace uw

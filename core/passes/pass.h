@@ -34,16 +34,26 @@ struct ImageProgress {
     /// progress callback.
     PathAccuracy paths;
     /// The stated standard error of light scattered more than once, where AllLightPass renders it,
-    /// relative to the image's mean.
+    /// relative to the image's mean, and that of each band, relative to the band's mean.
     std::optional<double> multiple_error;
+    std::vector<double> multiple_error_of_bands;
     std::uint64_t snow_particles = 0;  // drawn
 
     /// Takes in another image of the same scene, in other bands: the greatest of each.
     void include(const ImageProgress& other) {
         paths.samples = std::max(paths.samples, other.paths.samples);
         paths.error = std::max(paths.error, other.paths.error);
-        multiple_error = std::max(multiple_error, other.multiple_error);
+        include_multiple_error(other);
         snow_particles = std::max(snow_particles, other.snow_particles);
+    }
+    /// Takes in the greater of each stated error.
+    void include_multiple_error(const ImageProgress& other) {
+        multiple_error = std::max(multiple_error, other.multiple_error);
+        multiple_error_of_bands.resize(
+            std::max(multiple_error_of_bands.size(), other.multiple_error_of_bands.size()));
+        for (std::size_t b = 0; b < other.multiple_error_of_bands.size(); ++b)
+            multiple_error_of_bands[b] =
+                std::max(multiple_error_of_bands[b], other.multiple_error_of_bands[b]);
     }
 };
 
@@ -125,6 +135,8 @@ class Pass {
     virtual void begin(Rendering& rendering);
     /// Does its work. Throws Interrupted, and InputError if there is not enough memory.
     virtual void run(Rendering& rendering) = 0;
+    /// Sums up what its step has seen of the pixels, after the last pass was run.
+    virtual void end(Rendering& rendering);
 
   private:
     std::string stage_;

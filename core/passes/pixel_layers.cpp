@@ -384,8 +384,9 @@ void add_mirrored(const Film& mirrored, const LayerPlan& plan, const BandColour&
     });
 }
 
-ExposureMean::ExposureMean(const LayerPlan& plan, const BandColour& colour, Film& mean)
-    : plan_(plan), colour_(colour), mean_(mean) {
+ExposureMean::ExposureMean(const LayerPlan& plan, const BandColour& colour, Errors errors,
+                           Film& mean)
+    : plan_(plan), colour_(colour), errors_(errors), mean_(mean) {
     // Lamps and orders follow the layers: all channels but those of other kinds are means.
     std::vector<bool> is_mean(mean.channel_names().size(), true);
     std::vector<float> place(is_mean.size());
@@ -437,8 +438,10 @@ void ExposureMean::add_pixel(std::span<const float> part, float share, float sha
     }
     if (!plan_.has(Layer::error)) return;
     const auto first = static_cast<std::size_t>(plan_.first_channel(Layer::error));
-    for (std::size_t b = 0; b < plan_.band_count(); ++b)
-        mean[first + b] += share * part[first + b] * (share * part[first + b]);
+    for (std::size_t b = 0; b < plan_.band_count(); ++b) {
+        const float error = share * part[first + b];
+        mean[first + b] += errors_ == Errors::independent ? error * error : error;
+    }
 }
 
 void ExposureMean::add_transmittance(std::span<const float> part, float share,
@@ -457,7 +460,7 @@ void ExposureMean::finish() {
         const int y = window.y0 + static_cast<int>(line);
         for (int x = window.x0; x < window.x1; ++x) {
             const std::span<float> pixel = mean_.pixel(x, y);
-            if (plan_.has(Layer::error))  // whose variances add up
+            if (plan_.has(Layer::error) && errors_ == Errors::independent)
                 for (float& value : plan_.channels(Layer::error, pixel)) value = std::sqrt(value);
             restore_sums(plan_, colour_, pixel);
         }

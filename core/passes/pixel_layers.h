@@ -123,9 +123,13 @@ class ExposureMean {
     /// The share of a row's exposure that a part has, 0 to 1; those of all parts add up to 1.
     using RowShare = std::function<double(int row)>;
 
+    /// Whether the errors of an exposure's parts are independent, as those of light paths are, or
+    /// may all be alike.
+    enum class Errors { independent, alike };
+
     /// Adds to `mean`, whose values are 0; it outlives this object, as do `plan` and `colour`.
     /// Throws InputError if there is not enough memory.
-    ExposureMean(const LayerPlan& plan, const BandColour& colour, Film& mean);
+    ExposureMean(const LayerPlan& plan, const BandColour& colour, Errors errors, Film& mean);
 
     /// Includes the image of a part: with the same channels, and of the window all rows that have
     /// a share.
@@ -142,6 +146,7 @@ class ExposureMean {
 
     const LayerPlan& plan_;
     const BandColour& colour_;
+    Errors errors_;
     Film& mean_;
     std::vector<std::size_t> channels_;  // that are means
     std::vector<float> shares_;          // so far, of each row of the window

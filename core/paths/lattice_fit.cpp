@@ -101,6 +101,7 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach) {
 
 std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, double tolerance) {
     weights_.clear();
+    narrower_.clear();
     variance_ = 0;
     struct Accepted {
         double value, deviation;
@@ -120,6 +121,7 @@ std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, doubl
                         });
         if (count > 0 && !agrees) break;
         accepted[count++] = {tried_value_, std::sqrt(tried_variance_)};
+        narrower_.swap(weights_);
         weights_.swap(tried_);
         variance_ = tried_variance_;
         if (std::sqrt(variance_) < k_quiet * tolerance) break;

@@ -55,12 +55,15 @@ class LatticeFit {
 
     /// The variance of the last fitted value.
     double variance() const { return variance_; }
+    /// The weights of the fit that was accepted before it, in a narrower neighbourhood: what the
+    /// two differ by tells what the wider one takes from features. Empty if there is none.
+    std::span<const FitWeight> narrower() const { return narrower_; }
 
   private:
     template <std::size_t k_terms>
     bool fit_within(std::span<const FitNode> nodes, int reach);
 
-    std::vector<FitWeight> weights_, tried_;
+    std::vector<FitWeight> weights_, narrower_, tried_;
     CholeskyFactor cholesky_;
     double variance_ = 0;
     double tried_variance_ = 0, tried_value_ = 0;

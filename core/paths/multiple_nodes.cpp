@@ -25,12 +25,10 @@ enum NodeStream : std::uint64_t {
     k_scouting = 6
 };
 
-// The variance of the mean over a half's batches, from all batches' sum and sum of squares.
+// The variance of the mean over a half's batches, from their sum and sum of squares.
 double variance_of_half(double sum, double squares) {
-    const double mean = sum / k_node_batches;
-    const double of_batch = std::max(0.0, squares / k_node_batches - mean * mean) * k_node_batches /
-                            (k_node_batches - 1);
-    return of_batch / k_batches_of_half;
+    const double mean = sum / k_batches_of_half;
+    return std::max(0.0, squares / k_batches_of_half - mean * mean) / (k_batches_of_half - 1);
 }
 
 int scaled(int paths, double share) {
@@ -66,9 +64,10 @@ double NodePaths::surface_share(const MultipleNode& node) const {
 struct MultipleNodes::Workspace {
     CameraSegment segment;
     SurfaceLight light;
-    std::vector<double> seen;   // radiance of the surface
-    std::vector<double> water;  // as MultipleNode::water
-    std::vector<double> interval_mean, interval_squares, batch_mean;
+    std::vector<double> seen;                                         // radiance of the surface
+    std::vector<double> water;                                        // as MultipleNode::water
+    std::vector<double> interval_mean, interval_squares, batch_mean;  // of a half, of a batch
+    std::vector<double> lit_indirect;                                 // as MultipleNode's
     std::vector<double> surface;
 };
 
@@ -79,9 +78,11 @@ class MultipleNodes::WaterSum final : public PathTerms {
              Workspace& w)
         : intervals_(intervals), groups_(groups), bands_(bands), w_(w) {}
 
-    /// The terms that follow are those of one path among `count`.
-    void begin_path(int count) {
+    /// The terms that follow are those of one path among `count`, which sees lit surfaces or stays
+    /// in the water.
+    void begin_path(int count, bool is_lit) {
         share_ = 1.0 / count;
+        is_lit_ = is_lit;
         path_ = 0;
     }
     /// The light of the path's terms, summed over the bands.
@@ -98,6 +99,10 @@ class MultipleNodes::WaterSum final : public PathTerms {
         }
         w_.batch_mean[i] += share_ * mean;
         path_ += mean;
+        // Of surfaces, light that was looked up comes from no lamp.
+        if (is_lit_ && term.reflections > 0 && term.emitter == k_no_emitter)
+            for (std::size_t b = 0; b < bands_; ++b)
+                w_.lit_indirect[b] += share_ * term.radiance[b];
     }
 
   private:
@@ -105,6 +110,7 @@ class MultipleNodes::WaterSum final : public PathTerms {
     std::size_t groups_, bands_;
     Workspace& w_;
     double share_ = 1, path_ = 0;
+    bool is_lit_ = false;
 };
 
 class MultipleNodes::SurfaceSum final : public PathTerms {
@@ -166,8 +172,8 @@ Point3 MultipleNodes::find_lit_surfaces(const Place& place, int paths,
     return ray->origin;
 }
 
-void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths,
-                                     NodeLight& light) const {
+void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light,
+                                     SurfaceErrors& errors) const {
     Workspace& w = workspace_of_thread();
     MultipleNode node;
     begin(sample, true, w, node);
@@ -175,11 +181,17 @@ void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths,
     const auto y = static_cast<std::uint64_t>(64 * sample.y);
     trace_surface(PathRandom::seed_of(x, y, 1), paths, w, node);
     light = std::move(node.halves[0]);
-    const NodeLight& other = node.halves[1];
-    for (std::size_t k = 0; k < light.diffuse.size(); ++k)
-        light.diffuse[k] = 0.5F * (light.diffuse[k] + other.diffuse[k]);
-    for (std::size_t k = 0; k < light.glossy.size(); ++k)
-        light.glossy[k] = 0.5F * (light.glossy[k] + other.glossy[k]);
+    const auto merge = [&](std::vector<float>& values, const std::vector<float>& other,
+                           std::vector<float>& error) {
+        error.assign(values.empty() ? 0 : bands(), 0.0F);
+        for (std::size_t k = 0; k < values.size(); ++k) {
+            error[k % bands()] += 0.5F * (values[k] - other[k]);
+            values[k] = 0.5F * (values[k] + other[k]);
+        }
+        for (float& value : error) value = std::abs(value);
+    };
+    merge(light.diffuse, node.halves[1].diffuse, errors.diffuse);
+    merge(light.glossy, node.halves[1].glossy, errors.glossy);
 }
 
 void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& w,
@@ -203,7 +215,7 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
     }
     transport_.paths->begin(sample.ray, has_hit ? &sample.hit : nullptr, w.seen, w.segment);
     const CameraSegment::Light& light = w.segment.light;
-    node.mean_light = light.own;
+    node.mean_light = light.is_known ? light.own : 0;
     node.guessed_water = light.own - light.of_surface;
     if (!has_hit) return;
     constexpr double k_least_reflectance = 0.1;
@@ -231,20 +243,19 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
         node.mean_weights[k / bands()] += node.weights[k] / static_cast<float>(bands());
     // No surface guides the paths that stay in the water.
     transport_.paths->begin(*ray, has_hit ? &hit : nullptr, {}, w.segment);
-    w.segment.light.own = std::max(w.segment.light.own, node.mean_light);
     w.segment.paths = {};
-    if (weights_.vary()) {
+    CameraSegment::Light& light = w.segment.light;
+    if (light.is_known) light.own = std::max(light.own, node.mean_light);
+    if (light.is_known && weights_.vary()) {
         // Particles may be lit up anywhere, of which the lamps' guides know nothing. What is
         // typical is guessed without most of the scattered light: it is a few times as much.
         constexpr double k_ambient = 10, k_least_own = 3;
-        CameraSegment::Light& light = w.segment.light;
         light.ambient = std::max(light.ambient, k_ambient * typical_light);
         light.own = std::max(light.own, k_least_own * typical_light);
     }
     const double per_band = 1.0 / static_cast<double>(bands());
-    w.interval_mean.assign(count, 0.0);
-    w.interval_squares.assign(count, 0.0);
     w.batch_mean.assign(count, 0.0);
+    w.lit_indirect.assign(bands(), 0.0);
     WaterSum sum(intervals_, groups_, bands(), w);
     node.water_share = paths.water_share(node);
     const auto trace = [&](NodeStream stream, int batch, int all, MultipleNode::Moments& moments,
@@ -255,7 +266,7 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
             PathRandom random(
                 PathRandom::seed_of(place.seed, stream, static_cast<std::uint64_t>(batch)),
                 static_cast<std::uint32_t>(i));
-            sum.begin_path(in_batch);
+            sum.begin_path(in_batch, stream == k_node_lit);
             moments.work += trace_one(random) / in_all;
             const double of_path = sum.of_path() * per_band;
             moments.mean += of_path / in_all;
@@ -266,7 +277,8 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
         NodeLight& half = node.halves[static_cast<std::size_t>(batch / k_batches_of_half)];
         if (batch % k_batches_of_half == 0) {
             w.water.assign(count * groups_ * bands(), 0.0);
-            half.water_mean.assign(count, 0.0F);
+            w.interval_mean.assign(count, 0.0);
+            w.interval_squares.assign(count, 0.0);
         }
         trace(k_node_lit, batch, scaled(paths.lit, node.water_share), node.lit,
               [&](PathRandom& random) {
@@ -280,30 +292,42 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
             const double mean = std::exchange(w.batch_mean[i], 0.0) * per_band;
             w.interval_mean[i] += mean;
             w.interval_squares[i] += mean * mean;
-            half.water_mean[i] += static_cast<float>(mean / k_batches_of_half);
+            node.mean_light += mean / k_node_batches;
         }
+        if (batch % k_batches_of_half != k_batches_of_half - 1) continue;
         store(w.water, 1.0 / k_batches_of_half, half.water);
+        store(w.interval_mean, 1.0 / k_batches_of_half, half.water_mean);
+        half.water_variance.resize(count);
+        for (std::size_t i = 0; i < count; ++i)
+            half.water_variance[i] =
+                static_cast<float>(variance_of_half(w.interval_mean[i], w.interval_squares[i]));
     }
+    store(w.lit_indirect, 1.0 / k_node_batches, node.lit_indirect);
     for (MultipleNode::Moments* moments : {&node.lit, &node.water})
         moments->variance = std::max(0.0, moments->variance - moments->mean * moments->mean);
-    for (std::size_t i = 0; i < count; ++i) {
-        node.water_variance.push_back(
-            static_cast<float>(variance_of_half(w.interval_mean[i], w.interval_squares[i])));
-        node.mean_light += w.interval_mean[i] / k_node_batches;
-    }
 }
 
 void MultipleNodes::estimate_mirrored(const SurfaceSample& sample, int paths,
-                                      std::vector<double>& radiance) const {
+                                      std::vector<double>& radiance,
+                                      std::vector<double>& squares) const {
+    thread_local std::vector<double> of_path;
     radiance.assign(groups_ * bands(), 0.0);
-    SurfaceSum sum(groups_, bands(), radiance, false);
+    squares.assign(bands(), 0.0);
+    SurfaceSum sum(groups_, bands(), of_path, false);
     const auto x = static_cast<std::uint64_t>(64 * sample.x);
     const auto y = static_cast<std::uint64_t>(64 * sample.y);
     SurfaceSample glossy = sample;
     glossy.hit.reflectance = {};
     for (int i = 0; i < paths; ++i) {
         PathRandom random(PathRandom::seed_of(x, y, k_mirrored), static_cast<std::uint32_t>(i));
+        of_path.assign(radiance.size(), 0.0);
         transport_.paths->trace_mirrored(glossy, random, sum);
+        for (std::size_t b = 0; b < bands(); ++b) {
+            double light = 0;
+            for (std::size_t k = b; k < of_path.size(); k += bands()) light += of_path[k];
+            squares[b] += light * light;
+        }
+        for (std::size_t k = 0; k < radiance.size(); ++k) radiance[k] += of_path[k];
     }
     for (double& value : radiance) value /= paths;
 }
@@ -335,23 +359,29 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
     };
     w.segment.paths = {};
     SurfaceHit& hit = w.segment.water.hit;
-    for (std::size_t b = 0; b < bands; ++b)
-        node.surface_seen += hit.reflectance[b] * w.segment.transmittance[b];
-    node.surface_seen /= static_cast<double>(bands);
+    for (std::size_t b = 0; b < bands; ++b) {
+        const double seen = hit.reflectance[b] * w.segment.transmittance[b];
+        node.seen_of_band.push_back(static_cast<float>(seen));
+        node.surface_seen += seen / static_cast<double>(bands);
+    }
     hit.reflectance = per_band(bands, [](std::size_t) { return 1.0; });
     hit.has_material = false;
     // Weights are those of what the camera sees, so that paths end as they would in a pixel.
     const double share = std::max(node.surface_seen, k_least_seen);
     std::ranges::fill(w.segment.transmittance, share);
-    double sum = 0, squares = 0;
     const auto means = trace(k_node_diffuse, share, &NodeLight::diffuse);
-    for (std::size_t batch = 0; batch < means.size(); ++batch) {
-        node.halves[batch / k_batches_of_half].diffuse_mean += means[batch] / k_batches_of_half;
-        sum += means[batch];
-        squares += means[batch] * means[batch];
+    for (std::size_t half = 0; half < node.halves.size(); ++half) {
+        double sum = 0, squares = 0;
+        for (std::size_t i = 0; i < k_batches_of_half; ++i) {
+            const double mean = means[half * k_batches_of_half + i];
+            sum += mean;
+            squares += mean * mean;
+        }
+        NodeLight& light = node.halves[half];
+        light.diffuse_mean = sum / k_batches_of_half;
+        light.diffuse_variance = variance_of_half(sum, squares);
+        node.mean_light += node.surface_seen * sum / k_node_batches;
     }
-    node.diffuse_variance = variance_of_half(sum, squares);
-    node.mean_light += node.surface_seen * sum / k_node_batches;
     if (!node.surface->is_glossy) return;
     hit.reflectance = {};
     hit.has_material = true;

@@ -35,6 +35,14 @@ struct NodeLight {
     // The sums over the groups, means over the bands:
     std::vector<float> water_mean;  // by interval
     double diffuse_mean = 0;
+    // The variances of these as the estimate's own batches tell them, inverse to NodePaths' shares.
+    std::vector<float> water_variance;
+    double diffuse_variance = 0;
+};
+
+/// Standard errors of light on a surface, by band, as NodeLight has it.
+struct SurfaceErrors {
+    std::vector<float> diffuse, glossy;
 };
 
 /// Estimates of that light, and what they belong to.
@@ -47,13 +55,14 @@ struct MultipleNode {
     double mean_light = 0;  // roughly that of the ray, mean over the bands
     /// The light of its water and what a white surface would show, as guessed before any path.
     double guessed_water = 0, guessed_surface = 0;
-    double surface_seen = 0;  // the camera's radiance per diffuse_mean
+    /// The camera's radiance per light on a white surface, by band, and its mean over the bands.
+    std::vector<float> seen_of_band;
+    double surface_seen = 0;
+    /// What of its water's light the indirect light on surfaces makes, by band.
+    std::vector<float> lit_indirect;
     /// Two independent estimates: what is decided by one is applied to the other.
     std::array<NodeLight, 2> halves;
-    // The variances of either half's means, and NodePaths' shares, to which they are inverse:
-    std::vector<float> water_variance;
-    double diffuse_variance = 0;
-    double water_share = 1, surface_share = 1;
+    double water_share = 1, surface_share = 1;  // NodePaths'
     /// What a path of one kind brings, as means over the bands, and its work.
     struct Moments {
         double mean = 0, variance = 0, work = 0;
@@ -110,12 +119,15 @@ class MultipleNodes {
     /// and band. `typical_light`: the mean of the begun nodes' `mean_light`; it guides paths.
     void estimate_water(const Place& place, const NodePaths& paths, const IndirectLight& indirect,
                         double typical_light, MultipleNode& node) const;
-    /// The light on one surface sample alone, by this many paths.
-    void estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light) const;
+    /// The light on one surface sample alone, by this many paths; and its errors, as far as two
+    /// halves of the paths can tell.
+    void estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light,
+                          SurfaceErrors& errors) const;
     /// What the sample's specular lobe mirrors (PathTracer::trace_mirrored), by this many paths:
-    /// the radiance at the sample, by group and band.
-    void estimate_mirrored(const SurfaceSample& sample, int paths,
-                           std::vector<double>& radiance) const;
+    /// the radiance at the sample, by group and band, and the sum over the paths of the squares of
+    /// theirs, by band.
+    void estimate_mirrored(const SurfaceSample& sample, int paths, std::vector<double>& radiance,
+                           std::vector<double>& squares) const;
 
   private:
     class WaterSum;
@@ -138,14 +150,16 @@ class MultipleNodes {
 /// alike.
 inline constexpr double k_least_node_cosine = 0.96;
 
-/// Whether a node tells what light there is in the water of an interval: if enough of it lies
-/// before the node's surface, and enough of its light arrives.
-inline bool shows_interval(const MultipleNode& node, const DistanceIntervals& intervals,
-                           std::size_t interval) {
+/// How much of the water of an interval lies before a node's surface: of `enough` of it the node
+/// tells what light there is, of `little` if no other node does.
+enum class NodeReach : unsigned char { none, little, enough };
+inline NodeReach reach_into(const MultipleNode& node, const DistanceIntervals& intervals,
+                            std::size_t interval) {
     constexpr double k_least_share = 0.3;
-    constexpr float k_least_weight = 1e-30F;
-    return !node.mean_weights.empty() && node.mean_weights[interval] >= k_least_weight &&
-           intervals.share(interval, 0, node.reach) >= k_least_share;
+    if (node.mean_weights.empty() || node.reach <= intervals.begin(interval))
+        return NodeReach::none;
+    return intervals.share(interval, 0, node.reach) >= k_least_share ? NodeReach::enough
+                                                                     : NodeReach::little;
 }
 
 /// Whether two nodes tell of light on the same surface.

@@ -78,7 +78,8 @@ IndirectLight NodeLattice::light_surfaces(const NodePaths& paths, const ShareCal
     std::vector<NodeLight> lights(unseen.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(unseen.size(), [&](std::size_t at) {
-        estimator_.estimate_surface(unseen[at], paths.surface, lights[at]);
+        thread_local SurfaceErrors errors;
+        estimator_.estimate_surface(unseen[at], paths.surface, lights[at], errors);
         progress(k_share_of_seen + (1 - k_share_of_seen) * static_cast<double>(++done) /
                                        static_cast<double>(unseen.size()));
     });
@@ -150,9 +151,6 @@ Grid2D<SmoothNode> NodeLattice::smoothed(const NodeWindow& window,
 
 namespace {
 
-// What smoothing takes from features, too, which it is as wide as the noise hides them.
-constexpr double k_of_features = 2;
-
 double diffuse_of(const MultipleNode& node) {
     return 0.5 * (node.halves[0].diffuse_mean + node.halves[1].diffuse_mean);
 }
@@ -167,34 +165,121 @@ double typical_diffuse(const Grid2D<MultipleNode>& nodes) {
     return surfaces > 0 ? sum / surfaces : 0;
 }
 
-// The camera's radiance per indirect light on a node's surface: of the surface itself, and of what
-// water shows of the surfaces around it, on which light is as noisy. Much of what it shows in front
-// of a dark one comes from elsewhere.
-double light_of_diffuse(const MultipleNode& node, double typical) {
+// What the water shows of the surfaces around a node, by the indirect light on them. Much of what
+// it shows in front of a dark one comes from elsewhere: the light is divided by what is typical, if
+// that is more than the node's own.
+double glow_of_diffuse(double lit_indirect, double diffuse, double typical) {
     constexpr double k_left = 0.5;  // of the noise by blurring
-    const double diffuse = std::max(diffuse_of(node), typical);
-    return node.surface_seen + (diffuse > 0 ? k_left * node.lit.mean / diffuse : 0);
+    const double of_surfaces = std::max(diffuse, typical);
+    return of_surfaces > 0 ? k_left * lit_indirect / of_surfaces : 0;
 }
+
+// The camera's radiance per indirect light on a node's surface: of the surface itself, and of what
+// water shows of the surfaces around it, on which light is as noisy.
+double light_of_diffuse(const MultipleNode& node, double typical) {
+    double lit = 0;
+    for (const float light : node.lit_indirect)
+        lit += static_cast<double>(light) / static_cast<double>(node.lit_indirect.size());
+    return node.surface_seen + glow_of_diffuse(lit, diffuse_of(node), typical);
+}
+
+// The indirect light that either half of a node finds on its surface, by band.
+void add_diffuse(const MultipleNode& node, std::span<double> diffuse) {
+    for (const NodeLight& half : node.halves)
+        for (std::size_t k = 0; k < half.diffuse.size(); ++k)
+            diffuse[k % diffuse.size()] += 0.5 * static_cast<double>(half.diffuse[k]);
+}
+
+/// By band, sums over some nodes of the squares of errors, and of what these are relative to.
+struct ErrorSquares {
+    std::vector<double> variances, shifts, noise, squares;
+
+    void begin(std::size_t bands) {
+        for (std::vector<double>* sums : {&variances, &shifts, &noise, &squares})
+            sums->assign(bands, 0.0);
+    }
+    /// `shift`: of either half, or of none.
+    void add(std::span<const float> variance, const std::array<std::vector<float>, 2>& shift) {
+        for (std::size_t b = 0; b < variance.size(); ++b) {
+            variances[b] += static_cast<double>(variance[b]);
+            if (shift[0].empty()) continue;
+            const float difference = shift[0][b] - shift[1][b];
+            shifts[b] += static_cast<double>(shift[0][b] * shift[1][b]);
+            noise[b] += 0.5 * static_cast<double>(difference * difference);
+        }
+    }
+    void add_squares_of(double value) {
+        for (double& sum : squares) sum += value * value;
+    }
+    // The product of the shifts is the square of what is alike in both halves, and of noise, which
+    // is of either sign: half the variance of a half's shift, as some four of the nodes around are
+    // independent.
+    void store(std::vector<float>& errors) const {
+        constexpr double k_noise_of_product = 0.5;
+        errors.assign(variances.size(), 0.0F);
+        for (std::size_t b = 0; b < errors.size(); ++b)
+            if (squares[b] > 0)
+                errors[b] = static_cast<float>(std::sqrt(
+                    (variances[b] + std::max(0.0, shifts[b] - k_noise_of_product * noise[b])) /
+                    squares[b]));
+    }
+};
 
 }  // namespace
 
-double NodeLattice::error(const Grid2D<SmoothNode>& nodes, const NodeWindow& window) const {
-    const double diffuse = typical_diffuse(raw_);
-    double variance = 0, light = 0;
-    for (int j = window.j0; j < window.j1; ++j) {
-        for (int i = window.i0; i < window.i1; ++i) {
-            const double seen = light_of_diffuse(raw_(i, j), diffuse);
-            light += raw_(i, j).mean_light;
-            for (const float deviation : nodes(i, j).water_deviation)
-                variance += static_cast<double>(deviation * deviation);
-            for (const float deviation : nodes(i, j).diffuse_deviation)
-                variance += seen * seen * static_cast<double>(deviation * deviation);
-        }
+void NodeLattice::find_errors(const NodeWindow& window, Grid2D<SmoothNode>& nodes) const {
+    const std::size_t bands = estimator_.bands();
+    std::vector<double> typical(bands);
+    double surfaces = 0;
+    for (const MultipleNode& node : raw_) {
+        if (!node.surface) continue;
+        add_diffuse(node, typical);
+        ++surfaces;
     }
-    if (!(light > 0)) return 0;
-    const double nodes_of_bands =
-        static_cast<double>(window.size()) / static_cast<double>(estimator_.bands());
-    return std::sqrt(k_of_features * variance * nodes_of_bands) / light;
+    for (double& value : typical) value /= std::max(surfaces, 1.0);
+    const int columns = window.i1 - window.i0;
+    parallel_for(window.size(), [&](std::size_t at) {
+        const int i = window.i0 + static_cast<int>(at) % columns;
+        const int j = window.j0 + static_cast<int>(at) / columns;
+        const MultipleNode& own = raw_(i, j);
+        SmoothNode& node = nodes(i, j);
+        thread_local std::vector<double> weights, diffuse;
+        thread_local ErrorSquares water, of_diffuse, of_glossy, around;
+        for (ErrorSquares* sums : {&water, &of_diffuse, &of_glossy, &around}) sums->begin(bands);
+        for (int v = std::max(window.j0, j - k_variance_reach);
+             v <= std::min(window.j1 - 1, j + k_variance_reach); ++v) {
+            for (int u = std::max(window.i0, i - k_variance_reach);
+                 u <= std::min(window.i1 - 1, i + k_variance_reach); ++u) {
+                const SmoothNode& other = nodes(u, v);
+                weights.assign(bands, 0.0);
+                const std::vector<float>& of_other = raw_(u, v).weights;
+                for (std::size_t k = 0; k < of_other.size(); ++k)
+                    weights[k % bands] += static_cast<double>(of_other[k]);
+                water.add(other.water_variance, other.water_shift);
+                for (std::size_t b = 0; b < bands; ++b) water.squares[b] += weights[b] * weights[b];
+                if (!other.surface) continue;
+                around.add(other.diffuse_variance, other.diffuse_shift);
+                around.add_squares_of(1);
+                if (!see_same_surface(own, raw_(u, v))) continue;
+                of_diffuse.add(other.diffuse_variance, other.diffuse_shift);
+                of_diffuse.add_squares_of(1);
+                of_glossy.add(other.glossy_variance, {});
+                of_glossy.add_squares_of(1);
+            }
+        }
+        water.store(node.water_error);
+        of_diffuse.store(node.surface_errors.diffuse);
+        of_glossy.store(node.surface_errors.glossy);
+        around.store(node.glow_error);
+        diffuse.assign(bands, 0.0);
+        add_diffuse(own, diffuse);
+        for (std::size_t b = 0; b < bands; ++b)
+            node.glow_error[b] *=
+                own.lit_indirect.empty()
+                    ? 0.0F
+                    : static_cast<float>(glow_of_diffuse(static_cast<double>(own.lit_indirect[b]),
+                                                         diffuse[b], typical[b]));
+    });
 }
 
 namespace {
@@ -244,7 +329,9 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
         cost.surface += of_its_surface * node.surface_work;
         if (!node.surface) continue;
         // That of either half's mean was of half the paths.
-        const double variance = node.diffuse_variance * k_paths / 2 / of_its_surface;
+        const double of_halves =
+            0.5 * (node.halves[0].diffuse_variance + node.halves[1].diffuse_variance);
+        const double variance = of_halves * k_paths / 2 / of_its_surface;
         const double seen = light_of_diffuse(node, typical);
         of_surface += k_more_on_surfaces * variance * seen * seen;
     }

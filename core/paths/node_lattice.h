@@ -39,10 +39,10 @@ class NodeLattice {
     Grid2D<MultipleNode>& raw() { return raw_; }
     /// The nodes with the surfaces' light smoothed, and in `window` the water's.
     Grid2D<SmoothNode> smoothed(const NodeWindow& window, const DistanceIntervals& intervals) const;
-    /// The error of these smoothed nodes in a window: the RMS over the mean of all light. It counts
-    /// the noise of the nodes, as much again for what smoothing takes from features, which it is as
-    /// wide as the noise hides them, and the noise of the light on surfaces.
-    double error(const Grid2D<SmoothNode>& nodes, const NodeWindow& window) const;
+    /// Finds the standard errors of these smoothed nodes in a window. They count the noise of the
+    /// nodes, what smoothing takes from features as far as both halves show it, and the noise of
+    /// the light on surfaces in what the water shows of them.
+    void find_errors(const NodeWindow& window, Grid2D<SmoothNode>& nodes) const;
 
   private:
     template <class Visit>

@@ -17,11 +17,11 @@ namespace uw {
 
 namespace {
 
-constexpr int k_variance_reach = 2;  // of nodes whose variances are averaged
-static_assert(k_smoothing_reach == LatticeFit::k_reach + k_variance_reach);
 // Differences between fits that do not matter, relative to the light of the nodes around.
 constexpr double k_tolerance = 1e-3;
-constexpr std::array<float, 2> k_sign_of_half{1, -1};
+// The mean of the halves' sums: of a square of the halves' difference, twice the variance of
+// either, it has this much per square of a weight in either sum.
+constexpr double k_variance_of_mean = 0.125;
 
 /// The nodes around one that take part in a fit.
 class Neighbourhood {
@@ -93,13 +93,16 @@ void average_around(const Grid2D<MultipleNode>& raw, std::size_t at, const Of& o
 
 void average_surface_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNode>& nodes) {
     parallel_for(raw.size(), [&](std::size_t at) {
-        double sum = 0, surfaces = 0;
-        average_around(raw, at, [&](const MultipleNode& other) {
-            if (!other.surface) return;
-            ++surfaces;
-            sum += other.surface_share * other.diffuse_variance;
-        });
-        nodes[at].diffuse_variance = sum / (std::max(surfaces, 1.0) * raw[at].surface_share);
+        for (const std::size_t half : {0U, 1U}) {
+            double sum = 0, surfaces = 0;
+            average_around(raw, at, [&](const MultipleNode& other) {
+                if (!other.surface) return;
+                ++surfaces;
+                sum += other.surface_share * other.halves[half].diffuse_variance;
+            });
+            nodes[at].halves[half].diffuse_variance =
+                sum / (std::max(surfaces, 1.0) * raw[at].surface_share);
+        }
     });
 }
 
@@ -107,42 +110,76 @@ void average_surface_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleN
 // expectation, and inverse to the shares of paths.
 void average_water_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNode>& nodes) {
     parallel_for(raw.size(), [&](std::size_t at) {
-        std::vector<float>& of_node = nodes[at].water_variance;
         thread_local std::vector<double> variances, weights;
-        variances.assign(of_node.size(), 0.0);
-        weights.assign(of_node.size(), 0.0);
-        average_around(raw, at, [&](const MultipleNode& other) {
-            if (other.water_variance.empty()) return;
-            for (std::size_t k = 0; k < variances.size(); ++k) {
-                variances[k] += other.water_share * static_cast<double>(other.water_variance[k]);
-                weights[k] += static_cast<double>(other.mean_weights[k]);
-            }
-        });
-        for (std::size_t k = 0; k < of_node.size(); ++k)
-            of_node[k] =
-                weights[k] > 0
-                    ? static_cast<float>(variances[k] / (weights[k] * raw[at].water_share) *
-                                         static_cast<double>(nodes[at].mean_weights[k]))
-                    : 0.0F;
+        for (const std::size_t half : {0U, 1U}) {
+            std::vector<float>& of_node = nodes[at].halves[half].water_variance;
+            variances.assign(of_node.size(), 0.0);
+            weights.assign(of_node.size(), 0.0);
+            average_around(raw, at, [&](const MultipleNode& other) {
+                const std::vector<float>& of_other = other.halves[half].water_variance;
+                if (of_other.empty()) return;
+                for (std::size_t k = 0; k < variances.size(); ++k) {
+                    variances[k] += other.water_share * static_cast<double>(of_other[k]);
+                    weights[k] += static_cast<double>(other.mean_weights[k]);
+                }
+            });
+            for (std::size_t k = 0; k < of_node.size(); ++k)
+                of_node[k] =
+                    weights[k] > 0
+                        ? static_cast<float>(variances[k] / (weights[k] * raw[at].water_share) *
+                                             static_cast<double>(nodes[at].mean_weights[k]))
+                        : 0.0F;
+        }
     });
+}
+
+// By band, the squares of the differences between the halves, summed over the groups.
+void add_squares(std::span<const float> a, std::span<const float> b, std::span<float> squares) {
+    for (std::size_t band = 0; band < squares.size(); ++band) {
+        float difference = 0;
+        for (std::size_t k = band; k < a.size(); k += squares.size()) difference += a[k] - b[k];
+        squares[band] += difference * difference;
+    }
 }
 
 /// What the nodes tell of the water's light in one interval.
 struct IntervalOfNodes {
-    std::vector<float> weights;                 // 0: nothing
-    std::array<std::vector<float>, 2> of_half;  // the light divided by that, by half
-    std::vector<float> variances;               // of either
+    std::vector<NodeReach> reach;
+    std::vector<float> weights;  // 0: they scatter no light
+    // By half of the estimates, the light divided by the weight, and its variance.
+    std::array<std::vector<float>, 2> of_half, variances;
+    std::vector<float> squares;  // of the difference between the halves, divided as well, by band
 
     IntervalOfNodes(const Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
-                    std::size_t interval)
-        : weights(nodes.size()), of_half{weights, weights}, variances(nodes.size()) {
+                    std::size_t interval, std::size_t groups, std::size_t bands)
+        : reach(nodes.size()),
+          weights(nodes.size()),
+          of_half{weights, weights},
+          variances{weights, weights},
+          squares(nodes.size() * bands) {
+        // Less is not told from nothing by numbers of this precision.
+        constexpr float k_least_weight = 1e-30F;
+        const std::size_t values = groups * bands;
         for (std::size_t n = 0; n < nodes.size(); ++n) {
             const MultipleNode& node = nodes[n];
-            if (!shows_interval(node, intervals, interval)) continue;
+            reach[n] = reach_into(node, intervals, interval);
+            if (reach[n] == NodeReach::none || !(node.mean_weights[interval] >= k_least_weight))
+                continue;
             weights[n] = node.mean_weights[interval];
-            for (const std::size_t half : {0U, 1U})
+            for (const std::size_t half : {0U, 1U}) {
                 of_half[half][n] = node.halves[half].water_mean[interval] / weights[n];
-            variances[n] = node.water_variance[interval] / (weights[n] * weights[n]);
+                variances[half][n] =
+                    node.halves[half].water_variance[interval] / (weights[n] * weights[n]);
+            }
+            const auto light = [&](std::size_t half) {
+                return std::span(node.halves[half].water).subspan(interval * values, values);
+            };
+            const std::span<float> own = std::span(squares).subspan(n * bands, bands);
+            add_squares(light(0), light(1), own);
+            for (std::size_t b = 0; b < bands; ++b) {
+                const float weight = node.weights[interval * bands + b];
+                own[b] = weight > 0 ? own[b] / weight / weight : 0;
+            }
         }
     }
 };
@@ -152,7 +189,7 @@ class NodeSmoothing {
     NodeSmoothing(const Grid2D<MultipleNode>& raw, std::size_t groups, std::size_t bands)
         : raw_(raw), bands_(bands), values_(groups * bands) {}
 
-    /// Adds an interval to a node; false if none of the nodes around it tells anything.
+    /// Adds an interval to a node; false if no node around it reaches so far.
     bool smooth_water(const IntervalOfNodes& of_nodes, std::size_t interval, int i, int j,
                       SmoothNode& node) const;
     void smooth_surface(int i, int j, SmoothNode& node) const;
@@ -168,31 +205,61 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
     thread_local Neighbourhood near;
     const MultipleNode& own = raw_(i, j);
     for (std::size_t half = 0; half < 2; ++half) {
-        near.find(raw_, i, j, [&](std::size_t other) -> std::optional<FitNode> {
-            if (!(of_nodes.weights[other] > 0)) return std::nullopt;
-            FitNode of;
-            of.weight = static_cast<double>(of_nodes.weights[other]);
-            of.value = static_cast<double>(of_nodes.of_half[1 - half][other]);
-            of.variance = static_cast<double>(of_nodes.variances[other]);
-            return of;
-        });
-        if (near.nodes().empty()) return false;
+        bool is_reached = false;
+        const auto find = [&](NodeReach least) {
+            near.find(raw_, i, j, [&](std::size_t other) -> std::optional<FitNode> {
+                if (of_nodes.reach[other] < least) return std::nullopt;
+                is_reached = true;
+                if (!(of_nodes.weights[other] > 0)) return std::nullopt;
+                FitNode of;
+                of.weight = static_cast<double>(of_nodes.weights[other]);
+                of.value = static_cast<double>(of_nodes.of_half[1 - half][other]);
+                of.variance = static_cast<double>(of_nodes.variances[1 - half][other]);
+                return of;
+            });
+        };
+        find(NodeReach::enough);
+        if (near.nodes().empty()) find(NodeReach::little);
+        // Water that scatters nothing is known to be dark.
+        if (near.nodes().empty()) return is_reached;
         // As much as the node's ray shows of it: nothing behind its surface.
         const double shown = own.has_ray ? static_cast<double>(own.mean_weights[interval]) : 0.0;
         const double tolerance = k_tolerance * near.light() / std::max(shown, 1e-3 * near.weight());
-        for (const FitWeight& weight : fit.fit(near.nodes(), tolerance)) {
+        const std::span<const FitWeight> weights = fit.fit(near.nodes(), tolerance);
+        for (const FitWeight& weight : weights) {
             const MultipleNode& other = raw_[weight.index];
             const float* water = &other.halves[half].water[interval * values_];
             for (std::size_t k = 0; k < values_; ++k) {
                 const float of_band = other.weights[interval * bands_ + k % bands_];
-                if (!(of_band > 0)) continue;
-                const float light = static_cast<float>(0.5 * weight.weight) * water[k] / of_band;
-                node.light.water[interval * values_ + k] += light;
-                if (own.has_ray)
-                    node.water_deviation[k % bands_] +=
-                        k_sign_of_half[half] * light * own.weights[interval * bands_ + k % bands_];
+                if (of_band > 0)
+                    node.light.water[interval * values_ + k] +=
+                        static_cast<float>(0.5 * weight.weight) * water[k] / of_band;
+            }
+            if (!own.has_ray) continue;
+            const auto square =
+                static_cast<float>(k_variance_of_mean * weight.weight * weight.weight);
+            for (std::size_t b = 0; b < bands_; ++b) {
+                const float of_band = own.weights[interval * bands_ + b];
+                node.water_variance[b] +=
+                    square * of_nodes.squares[weight.index * bands_ + b] * of_band * of_band;
             }
         }
+        if (!own.has_ray || fit.narrower().empty()) continue;
+        const auto add_shift = [&](std::span<const FitWeight> weights_of_fit, float sign) {
+            for (const FitWeight& weight : weights_of_fit) {
+                const MultipleNode& other = raw_[weight.index];
+                const float* water = &other.halves[half].water[interval * values_];
+                for (std::size_t k = 0; k < values_; ++k) {
+                    const std::size_t b = interval * bands_ + k % bands_;
+                    if (other.weights[b] > 0)
+                        node.water_shift[half][k % bands_] +=
+                            sign * static_cast<float>(weight.weight) * water[k] / other.weights[b] *
+                            own.weights[b];
+                }
+            }
+        };
+        add_shift(weights, 1);
+        add_shift(fit.narrower(), -1);
     }
     return true;
 }
@@ -200,31 +267,54 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
 void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
     thread_local LatticeFit fit;
     thread_local Neighbourhood near;
+    thread_local std::vector<float> squares;
     const MultipleNode& own = raw_(i, j);
     node.surface = own.surface;
-    node.light.diffuse.assign(values_, 0.0F);
-    node.light.glossy.assign(own.surface->is_glossy ? values_ : 0, 0.0F);
+    const auto begin = [&](bool is_there, std::vector<float>& light, std::vector<float>& variance) {
+        light.assign(is_there ? values_ : 0, 0.0F);
+        variance.assign(is_there ? bands_ : 0, 0.0F);
+    };
+    begin(true, node.light.diffuse, node.diffuse_variance);
+    begin(own.surface->is_glossy, node.light.glossy, node.glossy_variance);
     for (std::size_t half = 0; half < 2; ++half) {
         near.find(raw_, i, j, [&](std::size_t index) -> std::optional<FitNode> {
             const MultipleNode& other = raw_[index];
             if (!see_same_surface(own, other)) return std::nullopt;
             FitNode of;
             of.value = other.halves[1 - half].diffuse_mean;
-            of.variance = other.diffuse_variance;
+            of.variance = other.halves[1 - half].diffuse_variance;
             return of;
         });
         const double tolerance = k_tolerance * near.light() / std::max(own.surface_seen, 1e-3);
-        for (const FitWeight& weight : fit.fit(near.nodes(), tolerance)) {
-            const NodeLight& other = raw_[weight.index].halves[half];
-            const auto share = static_cast<float>(0.5 * weight.weight);
-            for (std::size_t k = 0; k < values_; ++k) {
-                node.light.diffuse[k] += share * other.diffuse[k];
-                node.diffuse_deviation[k % bands_] +=
-                    k_sign_of_half[half] * share * other.diffuse[k];
-            }
-            for (std::size_t k = 0; k < node.light.glossy.size(); ++k)
-                node.light.glossy[k] += share * other.glossy[k];
+        const std::span<const FitWeight> weights = fit.fit(near.nodes(), tolerance);
+        for (const FitWeight& weight : weights) {
+            const MultipleNode& other = raw_[weight.index];
+            const auto add = [&](const std::vector<float> NodeLight::*values,
+                                 std::vector<float>& light, std::vector<float>& variance) {
+                const std::vector<float>& of_half = other.halves[half].*values;
+                for (std::size_t k = 0; k < light.size(); ++k)
+                    light[k] += static_cast<float>(0.5 * weight.weight) * of_half[k];
+                squares.assign(variance.size(), 0.0F);
+                if (!light.empty()) add_squares(of_half, other.halves[1 - half].*values, squares);
+                for (std::size_t b = 0; b < variance.size(); ++b)
+                    variance[b] +=
+                        static_cast<float>(k_variance_of_mean * weight.weight * weight.weight) *
+                        squares[b];
+            };
+            add(&NodeLight::diffuse, node.light.diffuse, node.diffuse_variance);
+            add(&NodeLight::glossy, node.light.glossy, node.glossy_variance);
         }
+        node.diffuse_shift[half].assign(bands_, 0.0F);
+        if (fit.narrower().empty()) continue;
+        const auto add_shift = [&](std::span<const FitWeight> weights_of_fit, float sign) {
+            for (const FitWeight& weight : weights_of_fit)
+                for (std::size_t k = 0; k < values_; ++k)
+                    node.diffuse_shift[half][k % bands_] +=
+                        sign * static_cast<float>(weight.weight) *
+                        raw_[weight.index].halves[half].diffuse[k];
+        };
+        add_shift(weights, 1);
+        add_shift(fit.narrower(), -1);
     }
 }
 
@@ -252,7 +342,6 @@ Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<MultipleNode>& raw, std::size_
     const NodeSmoothing smoothing(averaged, groups, bands);
     parallel_for(raw.size(), [&](std::size_t at) {
         if (!raw[at].surface) return;
-        nodes[at].diffuse_deviation.assign(bands, 0.0F);
         smoothing.smooth_surface(static_cast<int>(at) % raw.width(),
                                  static_cast<int>(at) / raw.width(), nodes[at]);
     });
@@ -274,12 +363,12 @@ void smooth_water(const Grid2D<MultipleNode>& raw, const NodeWindow& window,
     };
     for_each([&](int i, int j) {
         nodes(i, j).light.water.assign(intervals.count() * groups * bands, 0.0F);
-        nodes(i, j).water_deviation.assign(bands, 0.0F);
-        nodes(i, j).mean_light = raw(i, j).mean_light;
+        nodes(i, j).water_variance.assign(bands, 0.0F);
+        for (std::vector<float>& shift : nodes(i, j).water_shift) shift.assign(bands, 0.0F);
     });
     for (std::size_t interval = 0; interval < intervals.count(); ++interval) {
-        const IntervalOfNodes of_nodes(averaged, intervals, interval);
-        // Nothing is known of what lies behind an interval that no node tells of.
+        const IntervalOfNodes of_nodes(averaged, intervals, interval, groups, bands);
+        // Nothing is known of what lies behind an interval that no node reaches.
         const double before = interval == 0 ? 0 : intervals.end(interval - 1);
         for_each([&](int i, int j) {
             SmoothNode& node = nodes(i, j);

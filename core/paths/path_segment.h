@@ -189,6 +189,7 @@ struct CameraSegment {
         double own = 0;         // the ray's radiance, without single scattering
         double ambient = 0;     // what a path may meet anywhere
         double of_surface = 0;  // the part of `own` that comes straight from the surface
+        bool is_known = true;   // false: they stand for nothing but each other
     } light;
     /// The mean numbers of paths of each kind that are traced in place of one: fewer where they
     /// bring less of the ray's light than others.

@@ -235,7 +235,7 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
                 std::clamp(k_paths_of_share * reflected / segment.light.own, k_least_paths, 1.0);
     } else {
         // Nothing is known of it, as where only emission lights the scene: by throughput alone.
-        segment.light = {.own = 1, .ambient = 1 / k_ambient_beyond};
+        segment.light = {.own = 1, .ambient = 1 / k_ambient_beyond, .is_known = false};
     }
     segment.cumulative.clear();
     if (!(sum_plain > 0)) return;

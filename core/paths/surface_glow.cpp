@@ -166,6 +166,9 @@ SurfaceGlow::SurfaceGlow(const RaySource& rays, const LitScene& scene,
     source_.assign(channels_ * cells_.size(), 0.0F);
     light_.assign(channels_ * cells_.size(), 0.0F);
     const WaterInView water(rays, scene);
+    if (scene.field->strata())
+        mean_water_ = {water.medium().uniform.total_scattering(),
+                       water.medium().uniform.attenuation()};
     trace(rays, scene, lighting,
           [&](const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
               std::span<double> values) {

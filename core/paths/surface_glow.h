@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -43,6 +45,16 @@ class SurfaceGlow {
         return std::span(node_light_)
             .subspan(node * intervals_ * channels_, intervals_ * channels_);
     }
+    /// Whether the water changes with depth, and the light is that of water as it is in the mean.
+    bool is_of_mean_water() const { return mean_water_.has_value(); }
+    /// How much even light, of radiance 1, the mean water scatters towards the camera up to a
+    /// distance. Precondition: is_of_mean_water().
+    double scattered_by_mean_water(double distance, std::size_t band) const {
+        const double c = mean_water_->attenuation[band];
+        const double depth = c * distance;
+        return mean_water_->scattering[band] *
+               (depth > 1e-6 ? (1 - std::exp(-depth)) / c : distance);
+    }
     /// Adds the mean light of the pixel around an image position [pixels], along its rays up to
     /// `distance`, times `weight`, to `radiance`, by channel.
     void add(double x, double y, double distance, double weight, std::span<double> radiance) const;
@@ -64,6 +76,11 @@ class SurfaceGlow {
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_cells_of_pixel(double x, double y, std::vector<Corner>& cells) const;
 
+    struct MeanWater {
+        Spectrum scattering, attenuation;  // [1/m]
+    };
+
+    std::optional<MeanWater> mean_water_;  // none: it is the same everywhere
     std::size_t channels_ = 0, intervals_ = 0;
     int cells_of_pixel_ = 1;  // in each direction
     double spacing_ = 1;      // of the cells [pixels]

@@ -94,7 +94,7 @@ TEST_F(Passes, NeedAndProvideWhatTheSceneAsksFor) {
     desc_.render.scattering = RenderDesc::Scattering::multiple;
     EXPECT_TRUE(needs().light && needs().paths);
     EXPECT_TRUE(provided().has(Layer::multiple_surface));
-    EXPECT_FALSE(provided().has(Layer::error));
+    EXPECT_TRUE(provided().has(Layer::error));
 
     desc_.render.integrator = RenderDesc::Integrator::path;
     EXPECT_TRUE(needs().paths);

@@ -109,7 +109,7 @@ TEST_F(Paths, AreRefusedWhereTheyMakeNoSense) {
     refused(with({"--error", "0.1", "--samples", "4"}), 2, "--samples and --error: each says");
     refused({"--samples", "4097"}, 2, "--samples: expected 1 to 4096, found 4097; only integrator");
     refused({"--layers", "multiple"}, 2, "--layers: multiple: the scene is rendered with single");
-    refused({"--layers", "error"}, 2, "--layers: error: only --integrator path");
+    refused({"--layers", "error"}, 2, "--layers: error: only all light has a standard error");
     refused(with({"--layers", "order.1"}), 2, "written with --orders N");
     refused(with({"--set", "render.scattering=single"}), 3, "always renders all light");
     refused({"--integrator", "planes", "--set", "render.scattering=multiple"}, 3,
@@ -131,17 +131,25 @@ TEST_F(Paths, OfTheFastFormHaveAStatedError) {
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.err.find("multiple scattering: standard error "), std::string::npos)
         << result.err;
-    EXPECT_NE(result.err.find(" % of the image's mean\n"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(" % of the image's mean (red "), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(" % of the bands')\n"), std::string::npos) << result.err;
     const nlohmann::json stats = nlohmann::json::parse(read("s.json"));
     EXPECT_GT(stats.at("multiple_error"), 0);
     EXPECT_LT(stats.at("multiple_error"), 0.1);
+    ASSERT_EQ(stats.at("multiple_error_of_bands").size(), 3U);
+    for (const nlohmann::json& of_band : stats.at("multiple_error_of_bands")) {
+        EXPECT_GT(of_band, 0);
+        EXPECT_LT(of_band, 0.1);
+    }
     EXPECT_FALSE(stats.contains("error"));
     EXPECT_FALSE(stats.contains("samples"));
     EXPECT_TRUE(stats.at("seconds").contains("multiple scattering"));
     const ImageFile image = test::read_exr(folder_ / "out.exr");
     EXPECT_NEAR(std::stod(image.metadata.at("uwvdb/multiple_error")), stats.at("multiple_error"),
                 1e-6);
+    EXPECT_TRUE(image.metadata.contains("uwvdb/multiple_error_of_bands"));
     EXPECT_FALSE(image.metadata.contains("uwvdb/error"));
+    EXPECT_TRUE(image.channels.contains("error.R"));
     EXPECT_EQ(image.metadata.at("uwvdb/scattering"), "multiple");
     EXPECT_TRUE(image.channels.contains("multiple.volume.R"));
 }
