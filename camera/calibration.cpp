@@ -70,34 +70,85 @@ constexpr std::array<CalibrationFormat, 6> k_formats{
     CalibrationFormat::calibmar, CalibrationFormat::colmap, CalibrationFormat::scene};
 
 constexpr auto k_known =
-    "the known formats are OpenCV and ROS YAML (camera_matrix, distortion_coefficients), Kalibr's "
-    "camchain.yaml (cam0: {camera_model, intrinsics, ...}), Calibmar's calibration.yaml (model, "
-    "parameters, non_svp_model) and COLMAP's cameras.txt (1 OPENCV 1920 1080 ...)";
+    "the known formats are OpenCV and ROS YAML (camera_matrix, distortion_coefficients) and ROS's "
+    "camera_info, Kalibr's camchain.yaml (cam0: {camera_model, intrinsics, ...}), Calibmar's "
+    "calibration.yaml (model, parameters, non_svp_model), COLMAP's cameras.txt (1 OPENCV 1920 1080 "
+    "...), EuRoC's sensor.yaml, and the cameras of OKVIS, ORB-SLAM, CamOdoCal (VINS, Pinax) and "
+    "Matisse";
 
-/// OpenCV's dialect turned into YAML without moving any character: "%YAML:1.0" lacks a space, and
-/// values have type tags.
+/// Puts a blank behind the colon of keys such as "data:[1, 2]", which OpenCV reads without.
+std::string with_blanks(std::string_view text) {
+    std::string result;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string_view line = text.substr(begin, std::min(end + 1, text.size()) - begin);
+        const std::size_t key = std::min(line.find_first_not_of(' '), line.size());
+        const std::size_t colon = line.find(':');
+        constexpr std::string_view k_name =
+            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+        const bool is_key = colon != std::string_view::npos && colon > key &&
+                            line.find_first_not_of(k_name, key) == colon;
+        result += line.substr(0, is_key ? colon + 1 : 0);
+        const std::string_view rest = line.substr(is_key ? colon + 1 : 0);
+        constexpr std::string_view k_blanks = " \t\r\n";
+        if (is_key && !rest.empty() && k_blanks.find(rest.front()) == std::string_view::npos)
+            result += ' ';
+        result += rest;
+        begin = end + 1;
+    }
+    return result;
+}
+
+/// What programs write turned into YAML, moving no line: OpenCV's "%YAML:1.0" lacks a space, and
+/// its values have type tags; `ros2 topic echo` ends each message with "---".
 std::string as_yaml(std::string text) {
     const auto blank = [&](std::size_t begin, std::size_t length) {
         for (std::size_t i = begin; i < begin + length; ++i) text[i] = ' ';
     };
-    if (text.starts_with("%YAML")) blank(0, std::min(text.find('\n'), text.size()));
+    constexpr std::string_view k_blanks = " \t\r\n", k_end = "---";
+    const std::size_t last = text.find_last_not_of(k_blanks);
+    if (last != std::string::npos && last >= k_end.size() &&
+        std::string_view(text).substr(last - 2, 3) == k_end && text[last - 3] == '\n')
+        blank(last - 2, k_end.size());
+    if (text.starts_with("%YAML")) {
+        blank(0, std::min(text.find('\n'), text.size()));
+        text = with_blanks(text);
+    }
     constexpr std::string_view k_tag = "!!opencv-matrix";
     for (std::size_t at = text.find(k_tag); at != std::string::npos; at = text.find(k_tag, at))
         blank(at, k_tag.size());
     return text;
 }
 
+/// Pinax's calibration_params.txt is lines of a name and a number: the port, and the image that it
+/// rectifies to, but no camera.
+void refuse_pinax(std::string_view text, const std::string& origin) {
+    if (text.find("\nd_cam2panel ") == std::string_view::npos) return;
+    throw InputError(fmt::format(
+        "{}: has the port of Pinax, and no camera; name CamOdoCal's camera_left.yaml or "
+        "camera_right.yaml, and give the scene port: {{type: flat, distance: d_cam2panel, "
+        "thickness: "
+        "glass_thickness, n_glass: n_glass, n_water: n_water}} with these numbers",
+        origin));
+}
+
 Calibration read_yaml(const std::string& text, const std::string& origin,
                       const std::string& camera) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos)
         throw InputError(fmt::format("{}: is empty; {}", origin, k_known));
+    refuse_pinax(text, origin);
     const ConfigNode node = parse_yaml(as_yaml(text), origin, {.subject = "calibration"});
     const ConfigValue root(node, "");
+    if (node.find("uwvdb") != nullptr)
+        root.fail("is a scene, not a calibration; copy its camera instead");
+    if (looks_like_euroc(node)) return read_euroc_sensor(root);
+    if (looks_like_okvis(node)) return read_okvis(root, camera);
+    if (looks_like_orb_slam(node)) return read_orb_slam(root, camera);
+    if (looks_like_camodocal(node)) return read_camodocal(root);
+    if (looks_like_matisse(node)) return read_matisse(root);
     if (looks_like_kalibr(node)) return read_kalibr(root, camera);
     if (looks_like_calibmar(node)) return read_calibmar(root);
     if (looks_like_opencv(node)) return read_opencv_yaml(root);
-    if (node.find("uwvdb") != nullptr)
-        root.fail("is a scene, not a calibration; copy its camera instead");
     root.fail(fmt::format("is not in a known calibration format; {}", k_known));
 }
 
@@ -108,15 +159,17 @@ std::span<const CalibrationFormat> calibration_formats() {
 }
 
 std::string_view word_of(CalibrationFormat format) {
-    constexpr std::array<std::string_view, 6> k_words{"opencv",   "ros",    "kalibr",
-                                                      "calibmar", "colmap", "scene"};
+    constexpr std::array<std::string_view, 11> k_words{
+        "opencv", "ros",   "kalibr",   "calibmar",  "colmap", "scene",
+        "euroc",  "okvis", "orb-slam", "camodocal", "matisse"};
     return k_words[static_cast<std::size_t>(format)];
 }
 
 std::string_view title_of(CalibrationFormat format) {
-    constexpr std::array<std::string_view, 6> k_titles{"OpenCV YAML",        "ROS camera_info YAML",
-                                                       "Kalibr camchain",    "Calibmar calibration",
-                                                       "COLMAP cameras.txt", "uwvdb scene"};
+    constexpr std::array<std::string_view, 11> k_titles{
+        "OpenCV YAML",        "ROS camera_info YAML", "Kalibr camchain",   "Calibmar calibration",
+        "COLMAP cameras.txt", "uwvdb scene",          "EuRoC sensor.yaml", "OKVIS settings",
+        "ORB-SLAM settings",  "CamOdoCal camera",     "Matisse camera"};
     return k_titles[static_cast<std::size_t>(format)];
 }
 
@@ -137,6 +190,13 @@ Calibration read_calibration(const std::filesystem::path& file, const std::strin
                                                   : fmt::format(", '{}'", printable(result.camera)),
                             printable(camera)));
     }
+    const CameraDesc& desc = result.desc;
+    const auto [cx, cy] = std::pair(desc.intrinsics.cx, desc.intrinsics.cy);
+    if (!(cx >= 0 && cx <= desc.width && cy >= 0 && cy <= desc.height))
+        result.warnings.push_back(fmt::format(
+            "{}: the principal point ({:.6g}, {:.6g}) lies outside the image of {} x {} pixels; is "
+            "the resolution that of the calibration?",
+            origin, cx, cy, desc.width, desc.height));
     result.hash = text_hash(text);
     return result;
 }
@@ -164,9 +224,7 @@ std::string calibration_obstacle(CalibrationFormat format, const CameraDesc& cam
             return opencv_obstacle(camera);
         case CalibrationFormat::kalibr:
             return kalibr_obstacle(camera);
-        case CalibrationFormat::calibmar:
-        case CalibrationFormat::colmap:
-        case CalibrationFormat::scene:
+        default:
             break;
     }
     return "";
@@ -201,7 +259,7 @@ std::string write_calibration(CalibrationFormat format, const CameraDesc& camera
             return write_calibmar(camera);
         case CalibrationFormat::colmap:
             return write_colmap(camera);
-        case CalibrationFormat::scene:
+        default:
             break;
     }
     return write_scene_camera(camera);

@@ -21,6 +21,12 @@ enum class CalibrationFormat : std::uint8_t {
     calibmar,  // calibration.yaml
     colmap,    // cameras.txt, stock and refractive
     scene,     // the camera of a uwvdb scene
+    // These are read only.
+    euroc,      // sensor.yaml of EuRoC's (ASL's) cameras
+    okvis,      // the list `cameras` of OKVIS's settings
+    orb_slam,   // settings of ORB-SLAM
+    camodocal,  // CamOdoCal's cameras, which VINS and Pinax read
+    matisse,    // Matisse's cameras
 };
 
 /// What a calibration file says about one camera.
@@ -41,8 +47,25 @@ struct Calibration {
 /// 0.5).
 inline constexpr double k_half_pixel = 0.5;
 
+/// The numbers of a matrix: {rows, cols, data: [...]}, or a plain list.
+std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_view mend);
+
+/// fx, fy, cx and cy of a file in which the centre of the first pixel is at (0, 0).
+IntrinsicsDesc intrinsics_from_zero(std::span<const ConfigValue> fx_fy_cx_cy,
+                                    std::string_view mend);
+
+/// A lens of OpenCV's, k1 k2 p1 p2 k3 k4 k5 k6, of which the last may be missing; and its fisheye,
+/// k1 k2 k3 k4.
+DistortionDesc opencv_lens(std::span<const double> coefficients);
+DistortionDesc fisheye_lens(std::span<const double> coefficients);
+
 /// One reader per format. `root` is the whole document; all throw InputError.
 Calibration read_opencv_yaml(const ConfigValue& root);
+Calibration read_euroc_sensor(const ConfigValue& root);
+Calibration read_okvis(const ConfigValue& root, const std::string& camera);
+Calibration read_orb_slam(const ConfigValue& root, const std::string& camera);
+Calibration read_camodocal(const ConfigValue& root);
+Calibration read_matisse(const ConfigValue& root);
 Calibration read_kalibr(const ConfigValue& root, const std::string& camera);
 Calibration read_calibmar(const ConfigValue& root);
 /// `origin` names the file in messages.
@@ -51,6 +74,11 @@ Calibration read_colmap(std::string_view text, const std::string& origin,
 
 /// Whether the document looks like one of this format, however wrong its details.
 bool looks_like_opencv(const ConfigNode& root);
+bool looks_like_euroc(const ConfigNode& root);
+bool looks_like_okvis(const ConfigNode& root);
+bool looks_like_orb_slam(const ConfigNode& root);
+bool looks_like_camodocal(const ConfigNode& root);
+bool looks_like_matisse(const ConfigNode& root);
 bool looks_like_kalibr(const ConfigNode& root);
 bool looks_like_calibmar(const ConfigNode& root);
 bool looks_like_colmap(std::string_view text);
@@ -90,8 +118,9 @@ std::string_view word_of(CalibrationFormat format);
 std::string_view title_of(CalibrationFormat format);
 
 /// Reads a calibration of any format but a scene; the format is detected from the content. `camera`
-/// names one of several in the file; it may be empty if there is only one. Throws IoError if the
-/// file cannot be read, and InputError of one line for what is wrong in it.
+/// names one of several in the file; it may be empty if there is only one. A principal point
+/// outside the image is warned of. Throws IoError if the file cannot be read, and InputError of one
+/// line for what is wrong in it.
 Calibration read_calibration(const std::filesystem::path& file, const std::string& camera = "");
 
 /// Reads the file that `camera.calibration` names, if it names any, into the rest of `camera`.

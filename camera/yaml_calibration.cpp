@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -9,34 +10,9 @@
 
 namespace uw {
 
-// The YAML of OpenCV's FileStorage, as its calibration sample writes it, and of ROS camera_info.
-// First pixel's centre at (0, 0).
+// What several formats have in common.
 
-namespace {
-
-using Names = std::span<const std::string_view>;
-constexpr std::array<std::string_view, 4> k_matrix_names{"camera_matrix", "Camera_Matrix",
-                                                         "cameraMatrix", "K"};
-constexpr std::array<std::string_view, 4> k_coefficient_names{
-    "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "D"};
-constexpr std::array<std::string_view, 2> k_width_names{"image_width", "image_Width"};
-constexpr std::array<std::string_view, 2> k_height_names{"image_height", "image_Height"};
-
-const ConfigNode* find_any(const ConfigNode& map, Names names) {
-    for (const std::string_view name : names)
-        if (const ConfigNode* const node = map.find(name)) return node;
-    return nullptr;
-}
-
-/// The value of the first of several keys that is present.
-ConfigValue require_any(const ConfigValue& map, Names names, std::string_view mend) {
-    for (const std::string_view name : names)
-        if (const ConfigNode* const node = map.node().find(name)) return {*node, std::string(name)};
-    return require_value(map, names.front(), mend);
-}
-
-/// The numbers of a matrix: {rows, cols, data: [...]}, or a plain list.
-std::vector<ConfigValue> numbers_of(const ConfigValue& value, std::string_view mend) {
+std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_view mend) {
     if (value.node().kind != ConfigNode::Kind::map) return value.list(mend);
     const auto numbers = require_value(value, "data", mend).list(mend);
     const ConfigNode* const rows = value.node().find("rows");
@@ -51,19 +27,77 @@ std::vector<ConfigValue> numbers_of(const ConfigValue& value, std::string_view m
     return numbers;
 }
 
+IntrinsicsDesc intrinsics_from_zero(std::span<const ConfigValue> fx_fy_cx_cy,
+                                    std::string_view mend) {
+    return {fx_fy_cx_cy[0].positive(mend), fx_fy_cx_cy[1].positive(mend),
+            fx_fy_cx_cy[2].number(mend) + k_half_pixel, fx_fy_cx_cy[3].number(mend) + k_half_pixel};
+}
+
+DistortionDesc opencv_lens(std::span<const double> coefficients) {
+    std::array<double, 8> d{};
+    std::ranges::copy(coefficients, d.begin());
+    DistortionDesc lens;
+    lens.k = {d[0], d[1], d[4], d[5], d[6], d[7]};
+    lens.p = {d[2], d[3]};
+    return lens;
+}
+
+DistortionDesc fisheye_lens(std::span<const double> coefficients) {
+    DistortionDesc lens;
+    lens.model = DistortionDesc::Model::fisheye;
+    std::ranges::copy(coefficients, lens.k.begin());
+    return lens;
+}
+
+// The YAML of OpenCV's FileStorage, as its calibration sample writes it, and of ROS camera_info.
+// First pixel's centre at (0, 0).
+
+namespace {
+
+using Names = std::span<const std::string_view>;
+// Those of a message of ROS's camera_info are K, D, width and height, in ROS 2 k and d.
+constexpr std::array<std::string_view, 5> k_matrix_names{"camera_matrix", "Camera_Matrix",
+                                                         "cameraMatrix", "K", "k"};
+constexpr std::array<std::string_view, 5> k_coefficient_names{
+    "distortion_coefficients", "Distortion_Coefficients", "distCoeffs", "D", "d"};
+constexpr std::array<std::string_view, 3> k_width_names{"image_width", "image_Width", "width"};
+constexpr std::array<std::string_view, 3> k_height_names{"image_height", "image_Height", "height"};
+
+/// Whether the document is a message of ROS's camera_info, as `ros2 topic echo` prints it.
+bool is_camera_info(const ConfigNode& root) {
+    return root.find("width") != nullptr && root.find("height") != nullptr &&
+           (root.find("K") != nullptr || root.find("k") != nullptr);
+}
+
+const ConfigNode* find_any(const ConfigNode& map, Names names) {
+    for (const std::string_view name : names)
+        if (const ConfigNode* const node = map.find(name)) return node;
+    return nullptr;
+}
+
+/// The value of the first of several keys that is present.
+ConfigValue require_any(const ConfigValue& map, Names names, std::string_view mend) {
+    for (const std::string_view name : names)
+        if (const ConfigNode* const node = map.node().find(name)) return {*node, std::string(name)};
+    return require_value(map, names.front(), mend);
+}
+
 void read_matrix(const ConfigValue& value, IntrinsicsDesc& intrinsics) {
     constexpr auto k_mend = "give the nine numbers fx 0 cx 0 fy cy 0 0 1";
-    const auto m = numbers_of(value, k_mend);
+    const auto m = matrix_numbers(value, k_mend);
     if (m.size() != 9)
         value.fail(fmt::format("expected 9 numbers, found {}; {}", m.size(), k_mend));
+    if (m[0].number(k_mend) == 0 && m[4].number(k_mend) == 0)
+        value.fail(
+            "is that of a camera which is not calibrated, with a focal length of 0; calibrate "
+            "it, or take the message of another");
     constexpr std::array<double, 9> k_fixed{-1, 0, -1, 0, -1, -1, 0, 0, 1};
     for (std::size_t i = 0; i < 9; ++i) {
         if (k_fixed[i] >= 0 && m[i].number(k_mend) != k_fixed[i])
             m[i].fail(fmt::format("must be {}, found {}: skewed pixels are not supported; {}",
                                   k_fixed[i], m[i].number(k_mend), k_mend));
     }
-    intrinsics = {m[0].positive(k_mend), m[4].positive(k_mend), m[2].number(k_mend) + k_half_pixel,
-                  m[5].number(k_mend) + k_half_pixel};
+    intrinsics = intrinsics_from_zero(std::array{m[0], m[4], m[2], m[5]}, k_mend);
 }
 
 /// `unnamed` and `brown_conrady` have any number of coefficients; the former may be a fisheye.
@@ -78,6 +112,11 @@ Model read_model(const ConfigValue& root, Calibration& result) {
              {"fisheye", Model::equidistant},
              {"none", Model::plumb_bob}}};
         result.model = node->scalar;
+        // Drivers of cameras without distortion leave the name and the coefficients out.
+        if (node->scalar.empty()) {
+            result.model = "none";
+            return Model::plumb_bob;
+        }
         return ConfigValue(*node, "distortion_model").choice(k_models);
     }
     const ConfigNode* const fisheye = root.node().find("fisheye_model");
@@ -93,36 +132,95 @@ Model read_model(const ConfigValue& root, Calibration& result) {
 void read_coefficients(const ConfigValue& value, Model model, Calibration& result) {
     constexpr auto k_mend = "give k1 k2 p1 p2 [k3 [k4 k5 k6]], or k1 k2 k3 k4 of a fisheye";
     std::vector<double> d;
-    for (const ConfigValue& number : numbers_of(value, k_mend)) d.push_back(number.number(k_mend));
+    for (const ConfigValue& number : matrix_numbers(value, k_mend))
+        d.push_back(number.number(k_mend));
     const std::size_t count = d.size();
     const auto refuse = [&](std::string_view expected) {
         value.fail(fmt::format("expected {} numbers, found {}; {}", expected, count, k_mend));
     };
-    DistortionDesc& distortion = result.desc.distortion;
-    d.resize(std::max<std::size_t>(count, 14));
+    // Programs write zeros for what a model does not have.
+    const auto refuse_beyond = [&](std::size_t last, std::string_view what, std::string_view mend) {
+        for (std::size_t i = last; i < count; ++i)
+            if (d[i] != 0)
+                value.fail(fmt::format("has {} ({}), which is not supported; {}",
+                                       i >= 12  ? "a sensor tilt"
+                                       : i >= 8 ? "a thin-prism coefficient"
+                                                : what,
+                                       d[i], mend));
+    };
+    constexpr std::size_t k_most = 14;
+    if (count > k_most) refuse("0, 4, 5, 8, 12 or 14");
     if (model == Model::equidistant) {
-        if (count != 4) refuse("4");
-        distortion.model = DistortionDesc::Model::fisheye;
-        distortion.k = {d[0], d[1], d[2], d[3], 0, 0};
+        if (count < 4) refuse("4");
+        refuse_beyond(4, "a coefficient beyond k1 to k4", "calibrate with these four");
+        result.desc.distortion = fisheye_lens(std::span(d).first(4));
         return;
     }
-    if (model == Model::plumb_bob && count != 0 && count != 4 && count != 5) refuse("4 or 5");
-    if (model == Model::rational && count != 8) refuse("8");
-    if (count != 0 && count != 4 && count != 5 && count != 8 && count != 12 && count != 14)
+    const bool is_plumb_bob = model == Model::plumb_bob;
+    if (is_plumb_bob && count != 0 && count < 4) refuse("4 or 5");
+    if (model == Model::rational && count < 8) refuse("8");
+    if (!is_plumb_bob && model != Model::rational && count != 0 && count != 4 && count != 5 &&
+        count != 8 && count != 12 && count != k_most)
         refuse("0, 4, 5, 8, 12 or 14");
-    for (std::size_t i = 8; i < d.size(); ++i)
-        if (d[i] != 0)
-            value.fail(
-                fmt::format("has a {} ({}), which is not supported; calibrate without that model",
-                            i < 12 ? "thin-prism coefficient" : "sensor tilt", d[i]));
-    distortion.k = {d[0], d[1], d[4], d[5], d[6], d[7]};
-    distortion.p = {d[2], d[3]};
-    if (count >= 8) result.model = "rational_polynomial";
+    if (is_plumb_bob)
+        refuse_beyond(5, "a sixth coefficient or more",
+                      "write distortion_model: rational_polynomial if it is of that model");
+    refuse_beyond(8, "", "calibrate without that model");
+    result.desc.distortion = opencv_lens(std::span(d).first(std::min<std::size_t>(count, 8)));
+    if (count >= 8 && !is_plumb_bob) result.model = "rational_polynomial";
     if (model == Model::unnamed && count == 4)
         result.warnings.push_back(value.location() +
                                   ": the file names no distortion_model, so the four numbers are "
                                   "taken as k1 k2 p1 p2, as from cv::calibrateCamera; if they come "
                                   "from cv::fisheye, add distortion_model: equidistant");
+}
+
+/// Takes the image to the part of the sensor that a camera_info says was read out, and to fewer
+/// pixels where several were binned, as PinholeCameraModel::fromCameraInfo of ROS's image_geometry
+/// does.
+void read_window(const ConfigValue& root, Calibration& result) {
+    constexpr auto k_mend = "give whole pixels, or 0 for none";
+    constexpr int k_most_binned = 1000;
+    CameraDesc& camera = result.desc;
+    const auto pixels = [&](const ConfigValue& map, std::string_view key, int most) {
+        const ConfigNode* const node = map.node().find(key);
+        const std::string path =
+            map.path().empty() ? std::string(key) : fmt::format("{}.{}", map.path(), key);
+        return node == nullptr ? 0 : ConfigValue(*node, path).integer(0, most, k_mend);
+    };
+    int width = camera.width, height = camera.height;
+    if (const ConfigNode* const node = root.node().find("roi")) {
+        const ConfigValue roi(*node, "roi");
+        const int x = pixels(roi, "x_offset", width), y = pixels(roi, "y_offset", height);
+        const int wide = pixels(roi, "width", width), high = pixels(roi, "height", height);
+        const bool is_whole = x == 0 && y == 0 && wide == 0 && high == 0;
+        if (!is_whole && (wide == 0 || high == 0 || x + wide > width || y + high > height))
+            roi.fail(
+                fmt::format("{} x {} pixels at ({}, {}) are no part of the image of {} x {}; give "
+                            "zeros for all "
+                            "of it",
+                            wide, high, x, y, width, height));
+        if (!is_whole && (wide != width || high != height)) {
+            result.model += fmt::format(", roi {} x {} at ({}, {})", wide, high, x, y);
+            width = wide;
+            height = high;
+            camera.intrinsics.cx -= x;
+            camera.intrinsics.cy -= y;
+        }
+    }
+    const int across = std::max(1, pixels(root, "binning_x", k_most_binned));
+    const int down = std::max(1, pixels(root, "binning_y", k_most_binned));
+    if (across > 1 || down > 1) {
+        result.model += fmt::format(", binning {} x {}", across, down);
+        IntrinsicsDesc& i = camera.intrinsics;
+        const auto binned = [](double c, int by) { return (c - k_half_pixel) / by + k_half_pixel; };
+        i = {i.fx / across, i.fy / down, binned(i.cx, across), binned(i.cy, down)};
+    }
+    camera.width = width / across;
+    camera.height = height / down;
+    if (camera.width == 0 || camera.height == 0)
+        root.fail(
+            "its binning leaves no pixel; give binning_x and binning_y as the driver has them");
 }
 
 /// OpenCV's order of coefficients.
@@ -152,18 +250,22 @@ std::string matrix_text(std::string_view name, std::size_t rows, std::span<const
 }  // namespace
 
 bool looks_like_opencv(const ConfigNode& root) {
-    return find_any(root, k_matrix_names) != nullptr ||
-           find_any(root, k_coefficient_names) != nullptr ||
+    const auto has_any = [&](Names names) {
+        return find_any(root, names.first(names.size() - 1)) != nullptr;  // "k" and "d" are words
+    };
+    return has_any(k_matrix_names) || has_any(k_coefficient_names) || is_camera_info(root) ||
            root.find("distortion_model") != nullptr;
 }
 
 Calibration read_opencv_yaml(const ConfigValue& root) {
     Calibration result;
     const bool is_ros = root.node().find("projection_matrix") != nullptr ||
-                        root.node().find("camera_name") != nullptr;
+                        root.node().find("camera_name") != nullptr || is_camera_info(root.node());
     result.format = is_ros ? CalibrationFormat::ros : CalibrationFormat::opencv;
     if (const ConfigNode* const name = root.node().find("camera_name"))
         result.camera = name->scalar;
+    if (const ConfigNode* const header = root.node().find("header"))
+        if (const ConfigNode* const frame = header->find("frame_id")) result.camera = frame->scalar;
     constexpr auto k_size = "give image_width and image_height in pixels";
     const ConfigValue width = require_any(root, k_width_names, k_size);
     read_resolution(width, width, require_any(root, k_height_names, k_size), result.desc);
@@ -173,6 +275,7 @@ Calibration read_opencv_yaml(const ConfigValue& root) {
     read_coefficients(
         require_any(root, k_coefficient_names, "give distortion_coefficients: {data: [...]}"),
         model, result);
+    if (is_camera_info(root.node())) read_window(root, result);
     return result;
 }
 
@@ -237,19 +340,12 @@ void read_lens(const ConfigValue& camera, Calibration& result) {
         model.fail(
             "the distortion model fov is not supported; calibrate with radtan or equi instead");
     result.model = "pinhole, " + model.node().scalar;
-    DistortionDesc& distortion = result.desc.distortion;
     if (which == KalibrModel::none) return;
     constexpr auto k_mend = "give the four numbers that go with the distortion model";
     const auto numbers = require_value(camera, "distortion_coeffs", k_mend).list_of(4, k_mend);
     std::array<double, 4> d{};
     for (std::size_t i = 0; i < 4; ++i) d[i] = numbers[i].number(k_mend);
-    if (which == KalibrModel::equidistant) {
-        distortion.model = DistortionDesc::Model::fisheye;
-        distortion.k = {d[0], d[1], d[2], d[3], 0, 0};
-        return;
-    }
-    distortion.k = {d[0], d[1], 0, 0, 0, 0};
-    distortion.p = {d[2], d[3]};
+    result.desc.distortion = which == KalibrModel::equidistant ? fisheye_lens(d) : opencv_lens(d);
 }
 
 }  // namespace
@@ -272,10 +368,7 @@ Calibration read_kalibr(const ConfigValue& root, const std::string& camera) {
 
     const auto numbers =
         require_value(chosen, "intrinsics", k_intrinsics_mend).list_of(4, k_intrinsics_mend);
-    result.desc.intrinsics = {numbers[0].positive(k_intrinsics_mend),
-                              numbers[1].positive(k_intrinsics_mend),
-                              numbers[2].number(k_intrinsics_mend) + k_half_pixel,
-                              numbers[3].number(k_intrinsics_mend) + k_half_pixel};
+    result.desc.intrinsics = intrinsics_from_zero(numbers, k_intrinsics_mend);
     const ConfigValue resolution =
         require_value(chosen, "resolution", "give [width, height] in pixels");
     const auto sides = resolution.list_of(2, "give [width, height] in pixels");

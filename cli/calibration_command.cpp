@@ -31,7 +31,8 @@ const char* const k_calibration_examples = R"(Examples:
   uwvdb calibration plume.yaml --to colmap -o cameras.txt   a scene's camera for COLMAP
 
 Reads OpenCV and ROS YAML, Kalibr's camchain, Calibmar's calibration.yaml, COLMAP's cameras.txt
-(stock and refractive) and scenes; the format is detected from the content. docs/calibration.md has
+(stock and refractive), EuRoC's sensor.yaml, cameras of OKVIS, ORB-SLAM, CamOdoCal (VINS, Pinax) and
+Matisse, and scenes; the format is detected from the content. docs/calibration.md has
 their models and conventions. Fields of view are through the image's principal point.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.)";
 

@@ -21,6 +21,7 @@
 #include "core/base/text.h"
 #include "core/image/contact_sheet.h"
 #include "core/image/image_file.h"
+#include "core/scene/key_path.h"
 #include "core/scene/trajectory.h"
 #include "dataset/data_card.h"
 #include "dataset/formats.h"
@@ -55,9 +56,9 @@ struct PageView {
 
 Manifest::Manifest(const DatasetDefinition& definition)
     : definition_(definition),
-      csv_("view,draw,frame,time_s,camera,tx,ty,tz,qx,qy,qz,qw,record,image") {
+      csv_("view,draw,frame,time_s,stamp_ns,camera,tx,ty,tz,qx,qy,qz,qw,record,image") {
     for (const std::string& drawn : definition.draws.front())
-        csv_ += "," + csv_text(drawn.substr(0, drawn.find('=')));
+        csv_ += "," + csv_text(drawn.substr(0, end_of_path(drawn)));
     csv_ += "\n";
 }
 
@@ -67,12 +68,12 @@ void Manifest::add(const ViewRecord& record) {
     const std::optional<int> frame = definition_.frames[view.frame];
     const std::string name = record_file(definition_, view);
     const SetFile* const image = record.file("image");
-    csv_ += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{}", definition_.index(view),
-                        view.draw, frame ? std::to_string(*frame) : "", record.time,
+    csv_ += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", definition_.index(view),
+                        view.draw, frame ? std::to_string(*frame) : "", record.time, record.stamp,
                         definition_.cameras[view.camera], p.x, p.y, p.z, q.x, q.y, q.z, q.w, name,
                         image ? image->path : "");
     for (const std::string& drawn : definition_.draws[view.draw])
-        csv_ += "," + csv_text(std::string_view(drawn).substr(drawn.find('=') + 1));
+        csv_ += "," + csv_text(std::string_view(drawn).substr(end_of_path(drawn) + 1));
     csv_ += "\n";
     Json files = Json::object();
     for (const SetFile& file : record.files) files[file.role] = file.path;
@@ -80,6 +81,7 @@ void Manifest::add(const ViewRecord& record) {
                     {"draw", view.draw},
                     {"frame", frame ? Json(*frame) : Json(nullptr)},
                     {"time_s", record.time},
+                    {"stamp_ns", record.stamp},
                     {"camera", definition_.cameras[view.camera]},
                     {"position", point_json(p)},
                     {"rotation_wxyz", {q.w, q.x, q.y, q.z}},

@@ -264,7 +264,8 @@ std::string data_card(const DatasetFile& set, const PinholeFits& fits, std::uint
             "of each.\n";
     text +=
         "\nPoses are of a camera with x right, y down, z forward; world and units (metres) are "
-        "the scene's.\n\n## Water\n\n" +
+        "the scene's. `stamp_ns` of records and manifest are whole nanoseconds of the clock of the "
+        "file that the poses come from, or else of the scene's time.\n\n## Water\n\n" +
         water_lines(set.facts.at("water"));
     text += "\n## Lamps\n\n" + lamp_lines(set.facts.at("lamps"));
     text +=

@@ -94,8 +94,8 @@ void write_view(const std::filesystem::path& folder, const std::string& sum,
     SetFiles files(folder);
     for (const std::string& name : images.definition.formats)
         if (const auto write = dataset_format(name).write_view) write(images, files);
-    const ViewRecord record{images.view,   sum,           images.time,    images.camera,
-                            images.inputs, images.shared, files.written()};
+    const ViewRecord record{images.view,   sum,           images.time,   images.stamp,
+                            images.camera, images.inputs, images.shared, files.written()};
     SetFiles(folder).add_bytes("record", record_file(images.definition, images.view),
                                record_text(images.definition, record));
 }

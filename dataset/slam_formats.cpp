@@ -5,11 +5,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "camera/calibration.h"
 #include "core/base/error.h"
 #include "dataset/formats.h"
+#include "dataset/frame_stamps.h"
+#include "render/image_scene.h"
 
 namespace uw {
 
@@ -23,13 +26,9 @@ std::string tum_folder(const DatasetDefinition& definition, const View& view) {
     return definition.folder(view.draw) + "tum/" + (camera.empty() ? "" : camera + "/");
 }
 
-std::string tum_stamp(double time) {
-    return fmt::format("{:.6f}", time);
-}
-
 void write_tum_images(const ViewImages& images, SetFiles& files) {
     const std::string folder = tum_folder(images.definition, images.view);
-    const std::string file = tum_stamp(images.time) + ".png";
+    const std::string file = seconds_text(images.stamp) + ".png";
     write_image(images, files, "image.tum", folder + "rgb/" + file);
     write_depth(images, files, "depth.tum", folder + "depth/" + file, k_tum_depth_scale);
 }
@@ -43,7 +42,7 @@ void write_tum_tables(const CompleteSequence& sequence, SetFiles& files) {
         std::string associations;
         for (std::size_t frame = 0; frame < definition.frames.size(); ++frame) {
             const ViewRecord& record = sequence.at(frame, camera);
-            const std::string time = tum_stamp(record.time);
+            const std::string time = seconds_text(record.stamp);
             rgb += fmt::format("{0} rgb/{0}.png\n", time);
             depth += fmt::format("{0} depth/{0}.png\n", time);
             associations += fmt::format("{0} rgb/{0}.png {0} depth/{0}.png\n", time);
@@ -76,21 +75,44 @@ DatasetFormat tum_format() {
 
 namespace {
 
-constexpr double k_ns = 1e9;  // per second
 // Readers cut the names of images into seconds and nine digits of nanoseconds, and sort them as
-// text. So all have 19 digits, as the benchmark's, whose clock began in 1970, have.
-constexpr std::int64_t k_start_ns = 1'400'000'000'000'000'000;
+// text. So all have 19 digits, as the benchmark's, whose clock began in 1970, have; those of other
+// clocks are counted from May 2014 [ns].
+constexpr std::int64_t k_least_of_19_digits = 1'000'000'000'000'000'000;
+constexpr std::int64_t k_start_of_others = 1'400'000'000'000'000'000;
 
-/// The stamp of a time of the scene [ns].
-std::int64_t euroc_stamp(double time) {
-    return k_start_ns + std::llround(time * k_ns);
+bool has_19_digits(std::int64_t stamp) {
+    return stamp >= k_least_of_19_digits;
+}
+
+std::int64_t euroc_stamp(std::int64_t stamp) {
+    return has_19_digits(stamp) ? stamp : k_start_of_others + stamp;
 }
 
 std::string cam_folder(const DatasetDefinition& definition, std::size_t draw, std::size_t camera) {
     return fmt::format("{}mav0/cam{}/", definition.folder(draw), camera);
 }
 
-void check_euroc(const DatasetDefinition&, const SceneDesc& scene) {
+/// Throws UsageError for frames of which some have stamps of 19 digits and others have not.
+void check_euroc_stamps(const DatasetDefinition& definition, const SceneDesc& scene) {
+    if (!has_motion(scene)) return;
+    const FrameStamps stamps(scene);
+    std::optional<std::int64_t> least, most;
+    for (const std::optional<int>& frame : definition.frames) {
+        const double time = frame ? time_of_frame(scene, *frame) : first_time(scene);
+        const std::int64_t stamp = stamps.at(frame, time);
+        least = std::min(stamp, least.value_or(stamp));
+        most = std::max(stamp, most.value_or(stamp));
+    }
+    if (has_19_digits(*least) != has_19_digits(*most) || !has_19_digits(euroc_stamp(*least)))
+        throw UsageError(fmt::format(
+            "--format euroc: its stamps have 19 digits, but those of the poses, from {} to {} ns, "
+            "are on both sides of 10^18 or below -4 * 10^17; give the trajectory other times",
+            *least, *most));
+}
+
+void check_euroc(const DatasetDefinition& definition, const SceneDesc& scene) {
+    check_euroc_stamps(definition, scene);
     const auto check = [](const CameraDesc& camera) {
         const std::string obstacle = calibration_obstacle(
             CalibrationFormat::kalibr, without_port(camera, std::nullopt, false));
@@ -151,7 +173,7 @@ std::string truth_csv(const CompleteSequence& sequence) {
         const auto [p, q] = camera_pose(record.camera);
         const Vector3 v = velocity_at(sequence, frame);
         text +=
-            fmt::format("{},{},{},{},{},{},{},{},{},{},{},0,0,0,0,0,0\n", euroc_stamp(record.time),
+            fmt::format("{},{},{},{},{},{},{},{},{},{},{},0,0,0,0,0,0\n", euroc_stamp(record.stamp),
                         p.x, p.y, p.z, q.w, q.x, q.y, q.z, v.x, v.y, v.z);
     }
     return text;
@@ -161,7 +183,7 @@ void write_euroc_image(const ViewImages& images, SetFiles& files) {
     write_image(images, files, "image.euroc",
                 fmt::format("{}data/{}.png",
                             cam_folder(images.definition, images.view.draw, images.view.camera),
-                            euroc_stamp(images.time)));
+                            euroc_stamp(images.stamp)));
 }
 
 void write_euroc_tables(const CompleteSequence& sequence, SetFiles& files) {
@@ -173,7 +195,7 @@ void write_euroc_tables(const CompleteSequence& sequence, SetFiles& files) {
     for (std::size_t camera = 0; camera < definition.cameras.size(); ++camera) {
         std::string table = "#timestamp [ns],filename\n";
         for (std::size_t frame = 0; frame < frames; ++frame) {
-            const std::int64_t stamp = euroc_stamp(sequence.at(frame, camera).time);
+            const std::int64_t stamp = euroc_stamp(sequence.at(frame, camera).stamp);
             table += fmt::format("{0},{0}.png\n", stamp);
         }
         const std::string folder = cam_folder(definition, sequence.draw, camera);
@@ -205,7 +227,8 @@ DatasetFormat euroc_format() {
             .summary = "mav0/: EuRoC (ASL): cam0, cam1, ..., state_groundtruth_estimate0",
             .card =
                 "`mav0/`: the layout of EuRoC and other ASL data sets: `cam0/data` and so on, "
-                "named by time in nanoseconds, where the scene's time 0 is 1 400 000 000 s, "
+                "named by time in nanoseconds of 19 digits (clocks of fewer have 1 400 000 000 s "
+                "added), "
                 "`sensor.yaml` with intrinsics (first pixel's centre at (0, 0)) and `T_BS`, and "
                 "`state_groundtruth_estimate0`. The body is the first camera. Velocities are "
                 "differences of the positions in the frames around; there is no IMU, and biases "

@@ -12,6 +12,7 @@
 #include "core/base/error.h"
 #include "core/image/image_file.h"
 #include "dataset/formats.h"
+#include "dataset/frame_stamps.h"
 #include "dataset/set_files.h"
 
 namespace uw {
@@ -319,7 +320,7 @@ void write_kitti_sequence(const CompleteSequence& sequence, SetFiles& files) {
     std::string times, poses;
     for (std::size_t frame = 0; frame < definition.frames.size(); ++frame) {
         const ViewRecord& record = sequence.at(frame, 0);
-        times += fmt::format("{:.9e}\n", record.time - first.time);
+        times += seconds_text(record.stamp - first.stamp) + "\n";
         const Affine pose =
             frame == 0 ? Affine() : first_from_world * record.camera.world_from_camera;
         for (int row = 0; row < 3; ++row)

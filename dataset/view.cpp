@@ -154,6 +154,7 @@ std::string record_text(const DatasetDefinition& definition, const ViewRecord& r
                       {"frame", frame_json(definition, v)},
                       {"camera", v.camera},
                       {"time", record.time},
+                      {"stamp_ns", record.stamp},
                       {"view", camera_json(record.camera)},
                       {"inputs", record.inputs},
                       {"shared", list(record.shared)},
@@ -172,6 +173,7 @@ std::optional<ViewRecord> read_record(const std::filesystem::path& folder,
         record.view = {json.at("draw").get<std::size_t>(), view.frame,
                        json.at("camera").get<std::size_t>()};
         json.at("time").get_to(record.time);
+        json.at("stamp_ns").get_to(record.stamp);
         record.camera = camera_from_json(json.at("view"));
         json.at("inputs").get_to(record.inputs);
         for (const Json& file : json.at("shared"))

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -36,9 +37,10 @@ using InputSums = std::map<std::string, std::string>;
 struct ViewImages {
     const DatasetDefinition& definition;
     View view;
-    double time = 0;    // [s]
-    CameraDesc camera;  // with its pose
-    ColourDesc colour;  // how bands become R G B
+    double time = 0;         // of the scene [s]
+    std::int64_t stamp = 0;  // of the clock that its poses have (FrameStamps) [ns]
+    CameraDesc camera;       // with its pose
+    ColourDesc colour;       // how bands become R G B
     std::vector<double> bands_nm;
     Film film;
     LayerPlan plan;                      // of the film
@@ -96,9 +98,10 @@ Film clean_film(const Film& film, const LayerPlan& plan, const ColourDesc& colou
 /// poses and files are made of. Its file is written last, so that a view which has one is complete.
 struct ViewRecord {
     View view;
-    std::string set;    // the sum of the definition (sum_of)
-    double time = 0;    // [s]
-    CameraDesc camera;  // resolution, intrinsics, distortion, port, pose: no more of it
+    std::string set;         // the sum of the definition (sum_of)
+    double time = 0;         // as ViewImages::time
+    std::int64_t stamp = 0;  // likewise
+    CameraDesc camera;       // resolution, intrinsics, distortion, port, pose: no more of it
     InputSums inputs;
     /// Files that the views of a draw have in common and were made with: surface points, pinholes.
     std::vector<SetFile> shared;

@@ -36,8 +36,26 @@ std::vector<std::string> segments_of(const std::string& path) {
     return segments;
 }
 
-std::string joined(const std::string& path, const std::string& segment) {
-    return path.empty() || segment.starts_with('[') ? path + segment : path + "." + segment;
+/// Refuses a path that leads nowhere in the scene, with what may have been meant.
+[[noreturn]] void refuse_missing(const ConfigNode& tree, const std::string& path) {
+    const ConfigNode* parent = &tree;
+    std::string at;
+    for (const KeyStep& step : parse_key_path(path)) {
+        at += (at.empty() || step.index ? "" : ".") + step.text();
+        const ConfigNode* const found = find_value(tree, at);
+        if (found != nullptr) {
+            parent = found;
+            continue;
+        }
+        std::vector<std::string_view> there;
+        for (const ConfigNode::Entry& entry : parent->entries) there.push_back(entry.key);
+        const std::string_view nearest = nearest_word(step.key, there);
+        throw UsageError(fmt::format("the scene has no {}; {}", printable(at),
+                                     nearest.empty()
+                                         ? "write there what you expect, from where the fit begins"
+                                         : fmt::format("did you mean '{}'?", nearest)));
+    }
+    throw UsageError(fmt::format("the scene has no {}", printable(path)));
 }
 
 bool is_direction(const ConfigNode& node, std::string_view path) {
@@ -56,21 +74,23 @@ SceneUnknowns::SceneUnknowns(ConfigNode tree, std::filesystem::path file,
             add_of_pictures(key, pictures);
             continue;
         }
-        const std::vector<std::string> segments = segments_of(key);
-        if (segments.empty())
+        const std::string origin = "--unknown " + printable(key);
+        if (parse_key_path(key).empty())
             throw UsageError(
-                fmt::format("--unknown {}: not of the form of a key's path; for example "
+                fmt::format("{}: not of the form of a key's path; for example "
                             "water.absorption or lamps.*.position",
-                            printable(key)));
-        const std::size_t before = unknowns_.size();
+                            origin));
         try {
-            expand(tree_, segments, "");
+            for (const std::string& path : expanded_paths(tree_, key, origin)) {
+                const ConfigNode* const node = find_value(tree_, path);
+                if (node == nullptr) refuse_missing(tree_, path);
+                add(*node, path);
+            }
         } catch (const UsageError& fault) {
-            throw UsageError(fmt::format("--unknown {}: {}", printable(key), fault.what()));
+            throw UsageError(fmt::format("{}: {}", origin, fault.what()));
+        } catch (const InputError& fault) {
+            throw UsageError(fault.what());
         }
-        if (unknowns_.size() == before)
-            throw UsageError(
-                fmt::format("--unknown {}: the scene has nothing of that kind", printable(key)));
     }
     for (std::size_t i = 0; i < unknowns_.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
@@ -78,36 +98,6 @@ SceneUnknowns::SceneUnknowns(ConfigNode tree, std::filesystem::path file,
                 throw UsageError(
                     fmt::format("--unknown: {} is named twice; leave one out", unknowns_[i].name));
     limit();
-}
-
-void SceneUnknowns::expand(const ConfigNode& node, std::span<const std::string> steps,
-                           const std::string& path) {
-    if (steps.empty()) {
-        add(node, path);
-        return;
-    }
-    if (steps.front() == "*") {
-        for (std::size_t i = 0; i < node.items.size(); ++i) {
-            const std::string name = entry_name(node, i, path);
-            expand(node.items[i], steps.subspan(1),
-                   joined(path, name.empty() ? fmt::format("[{}]", i) : name));
-        }
-        for (const ConfigNode::Entry& entry : node.entries)
-            expand(entry.value, steps.subspan(1), joined(path, entry.key));
-        return;
-    }
-    const std::string next = joined(path, steps.front());
-    const ConfigNode* found = find_value(tree_, next);
-    if (found == nullptr) {
-        std::vector<std::string_view> there;
-        for (const ConfigNode::Entry& entry : node.entries) there.push_back(entry.key);
-        const std::string_view nearest = nearest_word(steps.front(), there);
-        throw UsageError(fmt::format("the scene has no {}; {}", printable(next),
-                                     nearest.empty()
-                                         ? "write there what you expect, from where the fit begins"
-                                         : fmt::format("did you mean '{}'?", nearest)));
-    }
-    expand(*found, steps.subspan(1), next);
 }
 
 void SceneUnknowns::add_of_pictures(const std::string& key, std::span<const std::string> pictures) {

@@ -74,8 +74,6 @@ class SceneUnknowns {
     void add_of_pictures(const std::string& key, std::span<const std::string> pictures);
     void add(const ConfigNode& node, const std::string& path);
     void add_number(const ConfigNode& node, const std::string& path, double scale);
-    void expand(const ConfigNode& node, std::span<const std::string> steps,
-                const std::string& path);
     void limit();
 
     ConfigNode tree_;

@@ -85,10 +85,16 @@ Affine pose_at(const TrajectoryDesc& desc, double time, const SceneDesc& scene,
         return trajectory.at(time).affine();
     const std::optional<FrameRange> frames =
         frames_within(scene, {trajectory.first_time(), trajectory.last_time()});
+    const bool is_within_a_frame =
+        scene.render.times == RenderDesc::Times::fps && trajectory.times().size() > 1 &&
+        (trajectory.last_time() - trajectory.first_time()) * scene.render.fps < 1;
     throw InputError(fmt::format(
-        "{}: has no pose for {}, at {:.6g} s; its poses are from {:.6g} to {:.6g} s{}", desc.where,
-        subject, time, trajectory.first_time(), trajectory.last_time(),
-        frames ? fmt::format(", which is frames {}-{}", frames->first, frames->last) : ""));
+        "{}: has no pose for {}, at {:.6g} s; its poses are from {:.6g} to {:.6g} s{}{}",
+        desc.where, subject, time, trajectory.first_time(), trajectory.last_time(),
+        frames ? fmt::format(", which is frames {}-{}", frames->first, frames->last) : "",
+        is_within_a_frame ? ": less than a frame; check the unit of their times, or write "
+                            "render.times: trajectory if each pose is a frame"
+                          : ""));
 }
 
 /// Sets all poses to those at `time` that `pose_of` gives their trajectories.

@@ -62,8 +62,13 @@ void look_for_animation(GeometryDesc& geometry, SceneDesc& scene) {
 void set_in_motion(SceneDesc& scene) {
     const auto load = [&](std::optional<TrajectoryDesc>& desc) {
         if (!desc) return;
-        const std::string hash = load_trajectory(*desc, scene.render.fps);
+        std::string doubt;
+        const std::string hash = load_trajectory(*desc, scene.render.fps, doubt);
         if (!hash.empty()) add_to_hash(hash, scene);
+        // Where frames are poses, frame n is right whatever the unit.
+        if (!doubt.empty() && scene.render.times == RenderDesc::Times::fps)
+            scene.warnings.push_back(fmt::format("{}.file: '{}': {}", desc->where,
+                                                 printable(desc->file.string(), 300), doubt));
     };
     load(scene.camera.trajectory);
     load(scene.rig_trajectory);
@@ -138,7 +143,7 @@ void refuse_overrides_of_drawn(const ConfigNode& tree, const VariationsDesc& des
                                const std::vector<std::string>& overrides) {
     for (const std::string& text : overrides)
         for (const std::string& key : drawn_keys(desc))
-            if (is_part_of(tree, text.substr(0, text.find('=')), key))
+            if (is_part_of(tree, text.substr(0, end_of_path(text)), key))
                 throw UsageError(fmt::format(
                     "--set {}: the variations draw {}, so this would have no effect; leave it out, "
                     "or take the key out of variations",

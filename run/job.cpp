@@ -11,6 +11,7 @@
 #include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "media/volumes/load_volumes.h"
+#include "media/volumes/vdb_header.h"
 
 namespace uw {
 
@@ -102,6 +103,20 @@ void check_sequences(std::span<const int> frames, const SceneDesc& scene) {
     missing.refuse();
 }
 
+// The grids of a frame's files, by their headers: a frame that lacks one is found before the first
+// is rendered. `checks`: one per volume.
+void check_grids(const SceneDesc& scene, int frame, std::vector<VolumeSequenceCheck>& checks) {
+    for (std::size_t v = 0; v < checks.size(); ++v) {
+        const VolumeDesc& volume = scene.volumes[v];
+        if (volume.is_sequence || (volume.motion && volume.motion->is_sequence))
+            checks[v].take(volume_of_frame(volume, frame));
+    }
+    for (const GeometryDesc& mesh : scene.geometry)
+        if (mesh.is_sequence && mesh.level_set)
+            select_grid(read_vdb_header(file_of_frame(mesh.file, frame), mesh.where),
+                        mesh.level_set->grid, mesh.where, LevelSets::fog);
+}
+
 }  // namespace
 
 std::vector<InputFile> check_inputs(const Job& job) {
@@ -121,9 +136,7 @@ std::vector<InputFile> check_inputs(const Job& job) {
         std::vector<VolumeSequenceCheck> checks(frames.empty() ? 0 : scene.volumes.size());
         for (const JobImage& image : of_scene) {
             if (image.choice.frame && image.choice.camera == of_scene.front().choice.camera)
-                for (std::size_t v = 0; v < checks.size(); ++v)
-                    if (scene.volumes[v].is_sequence)
-                        checks[v].take(volume_of_frame(scene.volumes[v], *image.choice.frame));
+                check_grids(scene, *image.choice.frame, checks);
             std::ranges::move(input_files(scene, image.choice, known), std::back_inserter(inputs));
         }
     }

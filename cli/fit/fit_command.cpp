@@ -21,6 +21,7 @@
 #include "core/base/input_files.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/scene/key_path.h"
 #include "edit/document/scene_text.h"
 #include "fit/board_corners.h"
 #include "fit/picture_poses.h"
@@ -65,7 +66,7 @@ struct Assumption {
 
 Assumption read_assumption(const std::string& option, const std::string& text,
                            const std::string& between, const char* form) {
-    const std::size_t equals = text.find('=');
+    const std::size_t equals = end_of_path(text);
     const std::size_t middle = text.find(between, equals == std::string::npos ? 0 : equals);
     Assumption read;
     if (equals == std::string::npos || middle == std::string::npos ||
@@ -218,8 +219,10 @@ std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
         read_text_file(a.scene, a.scene.filename().string(), YamlLimits{}.bytes, "scene"),
         a.scene.filename().string());
     for (const std::string& change : a.overrides) {
-        const std::size_t equals = change.find('=');
-        text.set(change.substr(0, equals), change.substr(equals + 1));
+        const std::size_t equals = end_of_path(change);
+        for (const std::string& path :
+             expanded_paths(text.tree(), change.substr(0, equals), "--set " + printable(change)))
+            text.set(path, change.substr(equals + 1));
     }
     std::vector<double> values;
     for (const FoundValue& found : result.values) values.push_back(found.value);

@@ -58,6 +58,19 @@ std::vector<std::string> grids_of_liquid(const VdbInspection& inspection) {
     return names;
 }
 
+/// A name as YAML reads it, also within brackets.
+std::string quoted_name(const std::string& text) {
+    const bool plain = !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
+        return std::isalnum(c) != 0 || c == '_';
+    }) && std::isalpha(static_cast<unsigned char>(text[0])) != 0;
+    if (plain && lower_case(text) != "null" && lower_case(text) != "true" &&
+        lower_case(text) != "false")
+        return text;
+    std::string result = "'";
+    for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
+    return result + "'";
+}
+
 std::string list(const std::vector<std::string>& names) {
     return fmt::format("'{}'", fmt::join(names, "', '"));
 }
@@ -461,6 +474,7 @@ void say_motion(const VdbInspection& inspection, VdbAdvice& advice) {
             lower_case(candidate.summary.base_name).starts_with("vel") &&
             (grid.empty() || candidate.summary.name.size() < grid.size()))
             grid = candidate.summary.name;
+    if (!grid.empty()) grid = quoted_name(grid);
     if (grid.empty() && has("vel.x") && has("vel.y") && has("vel.z"))
         grid = "[vel.x, vel.y, vel.z]";
     if (grid.empty()) return;
@@ -554,12 +568,31 @@ namespace {
 
 constexpr double k_wanted_depth = 1.5;
 constexpr double k_large_per_small = 5;
+constexpr double k_most_small = 1e12 / k_large_per_small;  // what scenes take of both [ppm]
+/// Beyond these no values are ppm, whatever the plume.
+constexpr double k_least_usual = 1e-6, k_most_usual = 1e6;
 constexpr std::size_t k_wanted_band = 1;  // of the default bands: 540 nm
 constexpr int k_lines = 24;               // across each side
 
 double round_to_two_digits(double value) {
     const double power = std::pow(10, std::floor(std::log10(value)) - 1);
     return std::round(value / power) * power;
+}
+
+/// The largest value of the grids to map; 1, that of the fog, for a level set.
+double largest_value(const VdbInspection& inspection, const VdbAdvice& advice) {
+    double largest = 0;
+    for (const GridInspection& grid : inspection.grids)
+        if (std::ranges::count(advice.map, grid.summary.name) > 0 && grid.values)
+            largest = std::max(largest, grid.values->max);
+    return advice.level_sets == LevelSets::fog || !(largest > 0) ? 1 : largest;
+}
+
+/// What concentration drafts begin with [ppm per unit]: 1, or for values that 1 ppm would take to
+/// no water as much as makes the largest of them 1 ppm.
+double first_small_ppm(const VdbInspection& inspection, const VdbAdvice& advice) {
+    const double largest = largest_value(inspection, advice);
+    return largest < k_least_usual || largest > k_most_usual ? 1 / largest : 1;
 }
 
 VolumeDesc describe(const VdbInspection& inspection, const VdbAdvice& advice) {
@@ -574,8 +607,8 @@ VolumeDesc describe(const VdbInspection& inspection, const VdbAdvice& advice) {
         GridMappingDesc mapping;
         mapping.grid = name;
         mapping.where = desc.where;
-        mapping.small_ppm = 1;
-        mapping.large_ppm = k_large_per_small;
+        mapping.small_ppm = first_small_ppm(inspection, advice);
+        mapping.large_ppm = k_large_per_small * mapping.small_ppm;
         desc.grids.push_back(mapping);
     }
     return desc;
@@ -644,11 +677,14 @@ void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
             deepest(field, model.medium, advice.bounds, axis, least);
     std::ranges::sort(depths, {}, [](const std::vector<double>& d) { return d[k_wanted_band]; });
 
-    advice.small_ppm = round_to_two_digits(k_wanted_depth / depths[1][k_wanted_band]);
+    const double first = desc.grids.front().small_ppm;
+    const double wanted = first * k_wanted_depth / depths[1][k_wanted_band];
+    advice.small_ppm = std::min(round_to_two_digits(wanted), k_most_small);
     advice.large_ppm = k_large_per_small * advice.small_ppm;
     advice.bands_nm = water.bands_nm;
     advice.optical_depth.clear();
-    for (const double depth : depths[1]) advice.optical_depth.push_back(depth * advice.small_ppm);
+    for (const double depth : depths[1])
+        advice.optical_depth.push_back(depth * advice.small_ppm / first);
 }
 
 void choose_concentrations(const VdbInspection& inspection, const Bounds& others,
@@ -664,7 +700,8 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
         mapping.large_ppm = advice.large_ppm;
     }
     advice.view = view_plume(desc, advice.bounds);
-    const double small_ppm = round_to_two_digits(advice.view.factor * advice.small_ppm);
+    const double small_ppm =
+        std::min(round_to_two_digits(advice.view.factor * advice.small_ppm), k_most_small);
     for (double& depth : advice.optical_depth) depth *= small_ppm / advice.small_ppm;
     advice.small_ppm = small_ppm;
     advice.large_ppm = k_large_per_small * small_ppm;
@@ -688,18 +725,6 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
 }
 
 namespace {
-
-std::string quoted(const std::string& text) {
-    const bool plain = !text.empty() && std::ranges::all_of(text, [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '_';
-    }) && std::isalpha(static_cast<unsigned char>(text[0])) != 0;
-    if (plain && lower_case(text) != "null" && lower_case(text) != "true" &&
-        lower_case(text) != "false")
-        return text;
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
-    return result + "'";
-}
 
 /// Whether some of the active voxels of the mapped grids hold nothing, as those of dense grids do.
 bool has_empty_voxels(const VdbInspection& inspection, const VdbAdvice& advice) {
@@ -751,10 +776,10 @@ void write_block(const VdbInspection& inspection, const std::filesystem::path& f
                  VdbAdvice& advice) {
     std::string& yaml = advice.volumes;
     yaml = "volumes:\n";
-    yaml += fmt::format("  - file: {}\n    grids:\n", quoted(file.string()));
+    yaml += fmt::format("  - file: {}\n    grids:\n", quoted_name(file.string()));
     for (const std::string& name : advice.map)
         yaml += fmt::format("      {}: {{small: {:g}, large: {:g}}}    # ppm per unit\n",
-                            quoted(name), advice.small_ppm, advice.large_ppm);
+                            quoted_name(name), advice.small_ppm, advice.large_ppm);
     const Placement& p = inspection.placement;
     if (advice.level_sets == LevelSets::fog) yaml += "    level_set: fog\n";
     yaml += fmt::format("    centering: {}\n    up: {}\n",
@@ -794,6 +819,26 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
     if (advice.fps) advice.scene += fmt::format("  fps: {:.6g}\n", *advice.fps);
 }
 
+/// What values may mean that are far from any concentration in ppm.
+void say_unit(const VdbInspection& inspection, VdbAdvice& advice) {
+    const double largest = largest_value(inspection, advice);
+    const std::string& name = advice.map.front();
+    if (largest > k_most_usual)
+        advice.lines.push_back(fmt::format(
+            "Its values reach {:.3g}, more than a million ppm: they may be numbers of particles, "
+            "whose volume depends on their size. For a grid of particles per m3 write, in place of "
+            "small and large, {}: {{silt: 1 /m3}} (per ml or cm3 1e6 /m3), with water: {{species: "
+            "{{silt: {{library: silt}}}}}} or another species; a particle of diameter d has pi/6 "
+            "d^3, at 10 um 5.2e-10 ppm per particle and m3.",
+            largest, quoted_name(name)));
+    else if (largest < k_least_usual)
+        advice.lines.push_back(fmt::format(
+            "Its values reach {:.3g} only: they may be fractions by volume, of which 1 is 1e6 ppm "
+            "(write {}: {{small: 1e6, large: 0}}), or masses in kg/m3, with a species {{silt: 1000 "
+            "g/m3}}. What the block below gives is as much as makes it plain to see.",
+            largest, quoted_name(name)));
+}
+
 /// A scene's sea floor is often at y = 0, and hides what is below.
 void say_what_is_below(VdbAdvice& advice) {
     const double lowest = advice.bounds.min.y, side = longest_side(advice.bounds);
@@ -827,6 +872,7 @@ VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
     say_place(inspection, has_size, advice);
     say_motion(inspection, advice);
     if (!frames.sampled.empty()) say_frame_rate(inspection, advice);
+    say_unit(inspection, advice);
     choose_concentrations(inspection, others, advice);
     say_what_is_below(advice);
     write_block(inspection, file, advice);

@@ -26,6 +26,7 @@
 #include "dataset/data_card.h"
 #include "dataset/definition.h"
 #include "dataset/formats.h"
+#include "dataset/frame_stamps.h"
 #include "dataset/input_summing.h"
 #include "dataset/pinhole_fit.h"
 #include "dataset/set_files.h"
@@ -171,9 +172,10 @@ class ViewRenderer : public ViewClient {
         const View view = definition.view(views_[place]);
         const ImageScene& rendered = engine_.renderer().scene();
         const SceneDesc& scene = rendered.desc();
-        const double number = definition.frames[view.frame].value_or(0);
+        const std::optional<int> frame = definition.frames[view.frame];
+        const double time = rendered.time().value_or(frame.value_or(0) / scene.render.fps);
         const auto images = std::make_shared<ViewImages>(ViewImages{
-            definition, view, rendered.time().value_or(number / scene.render.fps), scene.camera,
+            definition, view, time, stamps_.value().at(frame, time), scene.camera,
             scene.render.colour, scene.water.bands_nm, std::move(image.film), image.plan,
             std::move(image.sensor), set_.exposures, view_of(scene.render),
             std::move(image.metadata), image.surfaces, points_, std::move(inputs_), shared_});
@@ -195,6 +197,7 @@ class ViewRenderer : public ViewClient {
         shared_.clear();
         const DatasetDefinition& definition = set_.definition;
         const SceneDesc& scene = scenes_->of(static_cast<int>(draw));
+        stamps_.emplace(scene);
         if (needs_points(definition)) {
             const std::string name = points_file(definition, draw);
             share("points", name,
@@ -245,6 +248,7 @@ class ViewRenderer : public ViewClient {
     JobScenes* scenes_ = nullptr;
     std::vector<std::chrono::steady_clock::time_point> ends_;
     std::optional<std::size_t> draw_;                      // that of the last view
+    std::optional<FrameStamps> stamps_;                    // of it
     std::shared_ptr<const std::vector<Landmark>> points_;  // of it; null: none are needed
     std::vector<SetFile> shared_;                          // of it
     bool has_told_of_pinholes_ = false;

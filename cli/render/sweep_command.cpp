@@ -19,6 +19,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/base/text.h"
+#include "core/scene/key_path.h"
 #include "core/scene/render_desc.h"
 #include "render/scene_loading.h"
 #include "run/draft.h"
@@ -47,7 +48,7 @@ std::optional<std::array<double, 3>> range_in(std::string_view text) {
 }  // namespace
 
 std::optional<ValueAxis> sweep_axis(const std::string& override) {
-    const std::size_t equals = override.find('=');
+    const std::size_t equals = end_of_path(override);
     if (equals == std::string::npos) return std::nullopt;
     const auto range = range_in(std::string_view(override).substr(equals + 1));
     if (!range) return std::nullopt;

@@ -21,19 +21,49 @@ namespace {
 constexpr std::size_t k_longest_origin = 80;
 constexpr std::size_t k_most_steps = 32;  // deeper than any key; the tree is walked recursively
 
-/// Reads the indices of "[0][1]" after a key; false if they are not of that form.
-bool append_indices(std::string_view text, std::vector<KeyStep>& steps) {
-    while (!text.empty()) {
-        const std::size_t close = text.find(']');
-        if (text.front() != '[' || close == std::string_view::npos) return false;
-        std::size_t index = 0;
-        const char* const end = text.data() + close;
-        const auto [stop, error] = std::from_chars(text.data() + 1, end, index);
-        if (error != std::errc() || stop != end) return false;
+/// Takes an index, "[0]" or "[*]", from the beginning of `text`; false if it has none.
+bool take_index(std::string_view& text, std::vector<KeyStep>& steps) {
+    const std::size_t close = text.find(']');
+    if (!text.starts_with('[') || close == std::string_view::npos) return false;
+    std::size_t index = 0;
+    const char* const end = text.data() + close;
+    const auto [stop, error] = std::from_chars(text.data() + 1, end, index);
+    if (text.substr(0, close) == "[*")
+        steps.push_back({"", std::nullopt, true});
+    else if (error == std::errc() && stop == end)
         steps.push_back({"", index});
-        text.remove_prefix(close + 1);
-    }
+    else
+        return false;
+    text.remove_prefix(close + 1);
     return true;
+}
+
+/// Takes a name from the beginning of `text`, in quotes or up to a dot or a bracket; false if it
+/// has none.
+bool take_name(std::string_view& text, std::vector<KeyStep>& steps) {
+    if (text.starts_with('"') || text.starts_with('\'')) {
+        const std::size_t end = text.find(text.front(), 1);
+        if (end == std::string_view::npos) return false;
+        steps.push_back({std::string(text.substr(1, end - 1)), std::nullopt, false, true});
+        text.remove_prefix(end + 1);
+        return true;
+    }
+    const std::size_t end = std::min(text.find_first_of(".["), text.size());
+    if (end == 0) return false;
+    const std::string_view name = text.substr(0, end);
+    steps.push_back({name == "*" ? "" : std::string(name), std::nullopt, name == "*"});
+    text.remove_prefix(end);
+    return true;
+}
+
+bool has_any(const std::vector<KeyStep>& steps) {
+    return std::ranges::any_of(steps, &KeyStep::is_any);
+}
+
+/// `path` and a step below it.
+std::string below(const std::string& path, const KeyStep& step) {
+    const std::string text = step.text();
+    return path + (path.empty() || text.starts_with('[') ? "" : ".") + text;
 }
 
 [[noreturn]] void fail_path(const std::string& origin) {
@@ -97,7 +127,7 @@ class Walk {
         std::string names;
         for (std::size_t i = 0; i < node_->items.size(); ++i) {
             const std::string item = entry_name(*node_, i, path_);
-            if (item == name) {
+            if (item == name && !name.empty()) {
                 node_ = &node_->items[i];
                 return;
             }
@@ -110,6 +140,11 @@ class Walk {
     }
 
     void to_index(std::size_t index) {
+        // A grid without a name is called [0].
+        if (ConfigNode* const found = node_->find(KeyStep{"", index}.text())) {
+            node_ = found;
+            return;
+        }
         const bool list = node_->kind == ConfigNode::Kind::sequence;
         if (node_->kind == ConfigNode::Kind::null && !nearest_key_.empty()) {
             fail(fmt::format("is not in the scene, so there is no [{}]; did you mean '{}'?", index,
@@ -149,11 +184,13 @@ Node& child_of(Node& node, const Child& child) {
 /// the last of joined steps.
 std::optional<Child> child_at(const ConfigNode& node, const std::vector<KeyStep>& steps,
                               std::size_t& i, std::string_view path) {
-    if (steps[i].index) {
+    if (steps[i].is_any) return std::nullopt;
+    if (steps[i].index && node.kind != ConfigNode::Kind::map) {
         if (*steps[i].index >= node.items.size()) return std::nullopt;
         return Child{*steps[i].index, true};
     }
-    for (std::size_t item = 0; item < node.items.size(); ++item)
+    // Entries may have no name.
+    for (std::size_t item = 0; item < node.items.size() && !steps[i].key.empty(); ++item)
         if (entry_name(node, item, path) == steps[i].key) return Child{item, true};
     const std::string key = joined_key(node, steps, i);
     for (std::size_t entry = 0; entry < node.entries.size(); ++entry)
@@ -179,33 +216,105 @@ std::optional<std::vector<Child>> way_to(const ConfigNode& root, std::string_vie
 
 }  // namespace
 
+std::string KeyStep::text() const {
+    if (is_any) return "*";
+    if (index) return "[" + std::to_string(*index) + "]";
+    const bool is_word = !key.empty() && key != "*" &&
+                         key.find_first_of("\"'.=") == std::string::npos && key.front() != '[';
+    if (is_word) return key;
+    const char quote = key.find('"') == std::string::npos ? '"' : '\'';
+    return quote + key + quote;
+}
+
 std::vector<KeyStep> parse_key_path(std::string_view path) {
     std::vector<KeyStep> steps;
-    std::size_t start = 0;
-    while (start <= path.size()) {
-        const std::size_t dot = std::min(path.find('.', start), path.size());
-        const std::string_view segment = path.substr(start, dot - start);
-        const std::size_t bracket = std::min(segment.find('['), segment.size());
-        if (bracket == 0) return {};
-        steps.push_back({std::string(segment.substr(0, bracket)), std::nullopt});
-        if (!append_indices(segment.substr(bracket), steps)) return {};
-        start = dot + 1;
+    while (true) {
+        // grids.[0] is grids[0]: a grid without a name.
+        const bool is_index = !steps.empty() && path.starts_with('[');
+        if (!is_index && !take_name(path, steps)) return {};
+        while (path.starts_with('['))
+            if (!take_index(path, steps)) return {};
+        if (path.empty()) break;
+        if (path.front() != '.') return {};
+        path.remove_prefix(1);
     }
     if (steps.size() > k_most_steps) return {};
     return steps;
 }
 
+std::size_t end_of_path(std::string_view override_text) {
+    char quote = 0;
+    for (std::size_t i = 0; i < override_text.size(); ++i) {
+        const char c = override_text[i];
+        const bool begins = i == 0 || override_text[i - 1] == '.';
+        if (quote != 0)
+            quote = c == quote ? 0 : quote;
+        else if (begins && (c == '"' || c == '\''))
+            quote = c;
+        else if (c == '=')
+            return i;
+    }
+    return std::string_view::npos;
+}
+
 std::string joined_key(const ConfigNode& map, const std::vector<KeyStep>& steps, std::size_t& i) {
-    std::string found = steps[i].key;
-    if (map.kind != ConfigNode::Kind::map) return found;
+    std::string found = steps[i].index ? steps[i].text() : steps[i].key;
+    if (map.kind != ConfigNode::Kind::map || steps[i].is_quoted) return found;
     std::string joined = found;
-    for (std::size_t next = i + 1; next < steps.size(); ++next) {
+    for (std::size_t next = i + 1; next < steps.size() && !steps[next].is_quoted; ++next) {
         joined += (steps[next].index ? "" : ".") + steps[next].text();
         if (map.find(joined) == nullptr) continue;
         found = joined;
         i = next;
     }
     return found;
+}
+
+namespace {
+
+/// Appends the paths of what `steps` from `i` on lead to below `node`, which is at `path`.
+void expand(const ConfigNode& node, const std::vector<KeyStep>& steps, std::size_t i,
+            std::string path, std::vector<std::string>& paths) {
+    if (std::none_of(steps.begin() + static_cast<std::ptrdiff_t>(i), steps.end(),
+                     [](const KeyStep& step) { return step.is_any; })) {
+        // Of these the last may be missing: they are created.
+        for (; i < steps.size(); ++i) path = below(path, steps[i]);
+        paths.push_back(std::move(path));
+        return;
+    }
+    if (!steps[i].is_any) {
+        const std::size_t first = i;
+        const auto child = child_at(node, steps, i, path);
+        if (!child) return;
+        for (std::size_t step = first; step <= i; ++step) path = below(path, steps[step]);
+        expand(child_of(node, *child), steps, i + 1, std::move(path), paths);
+        return;
+    }
+    for (std::size_t item = 0; item < node.items.size(); ++item) {
+        std::vector<KeyStep> name{{entry_name(node, item, path), std::nullopt}};
+        std::size_t at = 0;
+        const auto named = child_at(node, name, at, path);
+        const bool is_known = !name[0].key.empty() && named && named->index == item;
+        expand(node.items[item], steps, i + 1, below(path, is_known ? name[0] : KeyStep{"", item}),
+               paths);
+    }
+    for (const ConfigNode::Entry& entry : node.entries)
+        expand(entry.value, steps, i + 1, below(path, {entry.key, std::nullopt}), paths);
+}
+
+}  // namespace
+
+std::vector<std::string> expanded_paths(const ConfigNode& root, std::string_view path,
+                                        const std::string& origin) {
+    const std::vector<KeyStep> steps = parse_key_path(path);
+    if (!has_any(steps)) return {std::string(path)};
+    std::vector<std::string> paths;
+    expand(root, steps, 0, "", paths);
+    if (paths.empty())
+        throw InputError(fmt::format(
+            "{}: {}: the scene has nothing of that kind; * stands for every entry of a list or map",
+            origin, printable(path)));
+    return paths;
 }
 
 std::string entry_name(const ConfigNode& list, std::size_t entry, std::string_view list_path) {
@@ -216,7 +325,7 @@ std::string entry_name(const ConfigNode& list, std::size_t entry, std::string_vi
 
 void apply_override(ConfigNode& root, const std::string& text) {
     const std::string origin = "--set " + printable(text, k_longest_origin);
-    const std::size_t equals = text.find('=');
+    const std::size_t equals = end_of_path(text);
     if (equals == std::string::npos || equals == 0) fail_path(origin);
     set_value(root, std::string_view(text).substr(0, equals),
               parse_yaml_value(std::string_view(text).substr(equals + 1), origin), origin);
@@ -226,10 +335,28 @@ void set_value(ConfigNode& root, std::string_view path, ConfigNode value,
                const std::string& origin) {
     const std::vector<KeyStep> steps = parse_key_path(path);
     if (steps.empty()) fail_path(origin);
+    if (has_any(steps)) {
+        for (const std::string& one : expanded_paths(root, path, origin))
+            set_value(root, one, value, origin);
+        return;
+    }
     Walk walk(root, origin);
     walk.go(steps);
     walk.set(std::move(value));
 }
+
+namespace {
+
+/// The same; the path itself where * stands for nothing.
+std::vector<std::string> paths_for(const ConfigNode& root, std::string_view path) {
+    std::vector<std::string> paths;
+    const std::vector<KeyStep> steps = parse_key_path(path);
+    if (has_any(steps)) expand(root, steps, 0, "", paths);
+    if (paths.empty()) paths.emplace_back(path);
+    return paths;
+}
+
+}  // namespace
 
 const ConfigNode* find_value(const ConfigNode& root, std::string_view path) {
     const auto way = way_to(root, path);
@@ -240,6 +367,15 @@ const ConfigNode* find_value(const ConfigNode& root, std::string_view path) {
 }
 
 bool remove_value(ConfigNode& root, std::string_view path) {
+    if (has_any(parse_key_path(path))) {
+        // From the last on, so that indices of those before stay.
+        bool is_there = false;
+        std::vector<std::string> paths;
+        expand(root, parse_key_path(path), 0, "", paths);
+        for (auto one = paths.rbegin(); one != paths.rend(); ++one)
+            is_there = remove_value(root, *one) || is_there;
+        return is_there;
+    }
     const auto way = way_to(root, path);
     if (!way) return false;
     ConfigNode* node = &root;
@@ -260,16 +396,27 @@ std::vector<KeyStep> resolved(const ConfigNode& scene, const std::string& key) {
     const ConfigNode* node = &scene;
     std::string path;
     for (std::size_t i = 0; i < steps.size() && node != nullptr; ++i) {
-        KeyStep& step = steps[i];
+        const std::size_t first = i;
+        if (steps[i].is_any) break;  // for nothing that is there
         if (node->kind == ConfigNode::Kind::sequence) {
-            for (std::size_t item = 0; item < node->items.size() && !step.index; ++item)
+            KeyStep& step = steps[i];
+            for (std::size_t item = 0;
+                 item < node->items.size() && !step.index && !step.key.empty(); ++item)
                 if (entry_name(*node, item, path) == step.key) step = {"", item};
             const bool is_there = step.index && *step.index < node->items.size();
             node = is_there ? &node->items[*step.index] : nullptr;
         } else {
-            node = step.index ? nullptr : node->find(step.key);
+            const std::string found = joined_key(*node, steps, i);
+            node = node->find(found);
+            if (node != nullptr && i > first) {
+                // One step for all that are joined.
+                steps.erase(steps.begin() + static_cast<std::ptrdiff_t>(first),
+                            steps.begin() + static_cast<std::ptrdiff_t>(i));
+                i = first;
+            }
+            steps[i] = {found, std::nullopt};
         }
-        path += (path.empty() || step.index ? "" : ".") + step.text();
+        path = below(path, steps[i]);
     }
     return steps;
 }
@@ -281,16 +428,17 @@ bool begins_with(const std::vector<KeyStep>& part, const std::vector<KeyStep>& w
 }  // namespace
 
 bool is_part_of(const ConfigNode& scene, const std::string& part, const std::string& whole) {
-    return begins_with(resolved(scene, part), resolved(scene, whole));
+    for (const std::string& of_part : paths_for(scene, part))
+        for (const std::string& of_whole : paths_for(scene, whole))
+            if (begins_with(resolved(scene, of_part), resolved(scene, of_whole))) return true;
+    return false;
 }
 
 std::optional<std::pair<std::string, std::string>> overlap(const ConfigNode& scene,
                                                            const std::vector<std::string>& keys) {
-    std::vector<std::vector<KeyStep>> paths;
-    for (const std::string& key : keys) paths.push_back(resolved(scene, key));
     for (std::size_t i = 0; i < keys.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
-            if (begins_with(paths[i], paths[j]) || begins_with(paths[j], paths[i]))
+            if (is_part_of(scene, keys[i], keys[j]) || is_part_of(scene, keys[j], keys[i]))
                 return std::pair(keys[j], keys[i]);
     return std::nullopt;
 }

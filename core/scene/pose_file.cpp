@@ -28,6 +28,10 @@ struct PoseLine {
     [[noreturn]] void fail(const std::string& what) const;
     /// A finite number; `name` is the column's.
     double parsed(std::string_view cell, std::string_view name) const;
+    /// A time to the nearest nanosecond [ns], of which one of its units has 10^places. `expected`
+    /// says what it is; `mend` what a number that is too large for a time may be instead.
+    std::int64_t stamp(std::string_view cell, int places, std::string_view expected,
+                       std::string_view mend) const;
     /// The rotation of a quaternion of length 1 to within 1e-3.
     Rotation rotation(double w, double x, double y, double z) const;
 };
@@ -35,9 +39,62 @@ struct PoseLine {
 /// The largest number in a file of poses.
 constexpr double k_largest_pose_number = 1e12;
 
+/// The last time of a file of poses, in the year 2116: differences of two fit into 64 bits [ns].
+constexpr std::int64_t k_last_stamp = std::int64_t{1} << 62;
+
+/// A decimal number in units of 10^-places, to the nearest whole one: 64 bits hold what a double
+/// rounds, the nanoseconds of a clock that began in 1970. None beyond k_last_stamp. Precondition:
+/// parse_number reads it.
+std::optional<std::int64_t> decimal_in_units(std::string_view text, int places) {
+    const bool is_negative = text.starts_with('-');
+    if (is_negative || text.starts_with('+')) text.remove_prefix(1);
+    constexpr int k_no_power = 1000;  // of a double
+    int power = places;
+    const std::size_t end = std::min(text.find_first_of("eE"), text.size());
+    if (end < text.size()) {
+        std::string_view exponent = text.substr(end + 1);
+        if (exponent.starts_with('+')) exponent.remove_prefix(1);
+        int given = exponent.starts_with('-') ? -k_no_power : k_no_power;
+        std::from_chars(exponent.data(), exponent.data() + exponent.size(), given);
+        power += std::clamp(given, -k_no_power, k_no_power);
+    }
+    std::string digits;
+    bool is_fraction = false;
+    for (const char c : text.substr(0, end)) {
+        if (c == '.') {
+            is_fraction = true;
+            continue;
+        }
+        digits += c;
+        if (is_fraction) --power;
+    }
+    digits.erase(0, digits.find_first_not_of('0'));
+    if (digits.empty()) return 0;
+    std::uint64_t units = 0;
+    bool rounds_up = false;
+    constexpr int k_most_digits = 19;
+    const int kept = static_cast<int>(digits.size()) + power;
+    if (kept > k_most_digits) return std::nullopt;
+    if (power > 0) digits.append(static_cast<std::size_t>(power), '0');
+    if (power < 0 && kept >= 0) rounds_up = digits[static_cast<std::size_t>(kept)] >= '5';
+    if (power < 0) digits.resize(static_cast<std::size_t>(std::max(kept, 0)));
+    std::from_chars(digits.data(), digits.data() + digits.size(), units);
+    if (rounds_up) ++units;
+    if (units > static_cast<std::uint64_t>(k_last_stamp)) return std::nullopt;
+    const auto magnitude = static_cast<std::int64_t>(units);
+    return is_negative ? -magnitude : magnitude;
+}
+
 // Files have four digits and more.
 constexpr double k_unit_tolerance = 1e-3;
 constexpr double k_last_frame = 999'999'999;
+constexpr int k_places_of_seconds = 9;    // of a nanosecond
+constexpr double k_exact_whole = 0x1p53;  // above it all doubles are whole
+
+/// From one time of a clock to another [s].
+double seconds_between(std::int64_t from, std::int64_t to) {
+    return static_cast<double>(to - from) / 1e9;
+}
 
 /// The number at the end of an image's name, and what is before it.
 struct NumberedName {
@@ -82,6 +139,17 @@ double PoseLine::parsed(std::string_view cell, std::string_view name) const {
         fail(fmt::format("{}: expected a number of at most 1e12, found '{}'", name,
                          printable(cell)));
     return value;
+}
+
+std::int64_t PoseLine::stamp(std::string_view cell, int places, std::string_view expected,
+                             std::string_view mend) const {
+    double value = 0;
+    const bool is_number = parse_number(cell, value) == NumberText::number;
+    const auto units = is_number ? decimal_in_units(cell, places) : std::nullopt;
+    if (!units)
+        fail(fmt::format("{}, found '{}'{}{}", expected, printable(cell),
+                         is_number ? ", which is after the year 2116" : "", is_number ? mend : ""));
+    return *units;
 }
 
 Rotation PoseLine::rotation(double w, double x, double y, double z) const {
@@ -144,11 +212,14 @@ void check_count(const PoseLine& line, std::size_t poses) {
         line.fail("the file has more than a million poses; give those that are needed");
 }
 
-void check_time(const PoseLine& line, const std::vector<TimedPose>& poses, double time) {
-    if (poses.empty() || time > poses.back().time) return;
-    line.fail(time == poses.back().time
-                  ? "has the time of the pose before; give each its own"
-                  : "its time is before that of the pose before; sort the file by time");
+/// Adds a pose at a time of the file's clock [ns], which must be after that before.
+void add_pose(PoseFile& file, const PoseLine& line, std::int64_t stamp, const Pose& pose) {
+    if (!file.stamps.empty() && stamp <= file.stamps.back())
+        line.fail(stamp == file.stamps.back()
+                      ? "has the time of the pose before, to the nanosecond; give each its own"
+                      : "its time is before that of the pose before; sort the file by time");
+    file.stamps.push_back(stamp);
+    file.poses.push_back({seconds_between(file.stamps.front(), stamp), pose});
 }
 
 // The formats whose poses are lines of a table. `origin` names the scene entry and the file in
@@ -165,19 +236,18 @@ PoseFile read_tum(std::string_view text, const std::string& origin) {
             line.fail(fmt::format("expected the 8 columns timestamp tx ty tz qx qy qz qw, found {}",
                                   cells.size()));
         check_count(line, file.poses.size());
+        const std::int64_t stamp = line.stamp(
+            cells[0], k_places_of_seconds, "timestamp: expected a number of seconds",
+            "; divide times in nanoseconds by 1e9, or, if qw comes before qx, write format: euroc");
         std::array<double, 8> v{};
-        for (std::size_t i = 0; i < v.size(); ++i) v[i] = line.parsed(cells[i], k_columns[i]);
-        if (file.poses.empty()) file.first_time = v[0];
-        const double time = v[0] - file.first_time;
-        check_time(line, file.poses, time);
-        file.poses.push_back({time, {{v[1], v[2], v[3]}, line.rotation(v[7], v[4], v[5], v[6])}});
+        for (std::size_t i = 1; i < v.size(); ++i) v[i] = line.parsed(cells[i], k_columns[i]);
+        add_pose(file, line, stamp, {{v[1], v[2], v[3]}, line.rotation(v[7], v[4], v[5], v[6])});
     }
     return file;
 }
 
 PoseFile read_euroc(std::string_view text, const std::string& origin) {
     PoseFile file;
-    std::int64_t first_ns = 0;
     for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
         const std::string_view content = take_line(text);
         if (content.empty() || content.front() == '#') continue;
@@ -189,22 +259,19 @@ PoseFile read_euroc(std::string_view text, const std::string& origin) {
                 fmt::format("expected the 8 columns ns, x, y, z, qw, qx, qy, qz or more, found {}",
                             cells.size()));
         check_count(line, file.poses.size());
-        std::int64_t ns = 0;
-        const auto [end, error] =
-            std::from_chars(cells[0].data(), cells[0].data() + cells[0].size(), ns);
-        if (error != std::errc() || end != cells[0].data() + cells[0].size() || ns < 0)
-            line.fail(fmt::format("expected the time in whole nanoseconds, found '{}'",
-                                  printable(cells[0])));
+        constexpr std::string_view k_expected = "expected the time in whole nanoseconds";
+        const std::int64_t stamp = line.stamp(cells[0], 0, k_expected, "");
+        // Tables that went through floating-point numbers have 1403636579763555584.0, or 1.4e18.
+        double number = 0;
+        parse_number(cells[0], number);
+        if (std::abs(number) < k_exact_whole && number != std::round(number))
+            line.fail(fmt::format(
+                "{}, found '{}'; multiply times in seconds by 1e9, or, if qw comes last, write "
+                "format: tum",
+                k_expected, printable(cells[0])));
         std::array<double, 8> v{};
         for (std::size_t i = 1; i < v.size(); ++i) v[i] = line.parsed(cells[i], k_columns[i]);
-        if (file.poses.empty()) {
-            first_ns = ns;
-            file.first_time = static_cast<double>(ns) * 1e-9;
-        }
-        // The difference of whole numbers: a double in seconds resolves 200 ns of a Unix time.
-        const double time = static_cast<double>(ns - first_ns) * 1e-9;
-        check_time(line, file.poses, time);
-        file.poses.push_back({time, {{v[1], v[2], v[3]}, line.rotation(v[4], v[5], v[6], v[7])}});
+        add_pose(file, line, stamp, {{v[1], v[2], v[3]}, line.rotation(v[4], v[5], v[6], v[7])});
     }
     return file;
 }
@@ -466,22 +533,83 @@ Pose placed(const Pose& pose, const TrajectoryDesc& desc) {
 
 namespace {
 
+/// The file's time that is the scene's time 0 [ns]. Precondition: the file has times.
+std::int64_t zero_of(const PoseFile& file, const TrajectoryDesc& desc) {
+    if (!desc.start) return file.stamps.front();
+    const auto zero = nanoseconds(*desc.start);
+    if (!zero)
+        throw InputError(fmt::format(
+            "{}.start: {:g} s is after the year 2116; give the file's time that is the scene's "
+            "time 0, in seconds",
+            desc.where, *desc.start));
+    return *zero;
+}
+
 /// From the file's world and times to the scene's.
 std::vector<TimedPose> all_placed(const PoseFile& file, const TrajectoryDesc& desc, double fps) {
+    const std::int64_t zero = file.stamps.empty() ? 0 : zero_of(file, desc);
     std::vector<TimedPose> poses;
     poses.reserve(file.poses.size());
-    for (const auto& [time, pose] : file.poses) {
-        const double scene_time = file.counts_frames ? time / fps
-                                  : desc.start       ? time + (file.first_time - *desc.start)
-                                                     : time;
-        poses.push_back({scene_time, placed(pose, desc)});
+    for (std::size_t i = 0; i < file.poses.size(); ++i) {
+        const double time =
+            file.stamps.empty() ? file.poses[i].time / fps : seconds_between(zero, file.stamps[i]);
+        poses.push_back({time, placed(file.poses[i].pose, desc)});
     }
     return poses;
 }
 
 }  // namespace
 
-std::string load_trajectory(TrajectoryDesc& desc, double fps) {
+std::optional<std::int64_t> nanoseconds(double seconds) {
+    // The parts of a second apart: their product with 1e9 is rounded to a nanosecond, that of a
+    // Unix time to 128.
+    const double whole = std::floor(seconds);
+    if (!(std::abs(whole) < static_cast<double>(k_last_stamp) / 1e9)) return std::nullopt;
+    return static_cast<std::int64_t>(whole) * 1'000'000'000 + std::llround((seconds - whole) * 1e9);
+}
+
+namespace {
+
+/// What is odd about the times of a file of which frame n is shown at n/fps seconds; empty if
+/// nothing is. A few whole numbers from 0 or 1 on may be anything.
+std::string doubt_of_times(const std::vector<std::int64_t>& stamps, double fps) {
+    constexpr std::int64_t k_second = 1'000'000'000;
+    constexpr std::size_t k_few = 10;
+    if (stamps.size() < 2) return "";
+    const double duration = seconds_between(stamps.front(), stamps.back());
+    if (duration * fps < 1)
+        return fmt::format(
+            "all of its {} poses lie within {:.3g} s, less than a frame at render.fps: {:g}; check "
+            "the unit of its times, or write render.times: trajectory if each pose is a frame",
+            stamps.size(), duration, fps);
+    const bool counts =
+        stamps.size() >= k_few && (stamps.front() == 0 || stamps.front() == k_second) &&
+        std::ranges::all_of(stamps, [](std::int64_t ns) { return ns % k_second == 0; });
+    if (!counts) return "";
+    const std::int64_t step =
+        (stamps.back() - stamps.front()) / static_cast<std::int64_t>(stamps.size() - 1) / k_second;
+    const bool is_even = std::ranges::adjacent_find(stamps, [](std::int64_t a, std::int64_t b) {
+                             return b - a != k_second;
+                         }) == stamps.end();
+    constexpr std::int64_t k_long = 10;
+    if (is_even && fps != 1)
+        return fmt::format(
+            "its times are {0}, {1}, {2}, ..., as the numbers of frames are, and mean seconds: its "
+            "path takes {3:g} s, {4:.0f} frames at render.fps: {5:g}; if they are frames, divide "
+            "them by the frames per second, or write render.times: trajectory and render.fps: 1",
+            stamps[0] / k_second, stamps[1] / k_second, stamps[2] / k_second, duration,
+            duration * fps + 1, fps);
+    if (step >= k_long)
+        return fmt::format(
+            "its times are whole numbers, {} apart, and mean seconds: its path takes {:g} s; "
+            "divide times in milliseconds by 1000",
+            step, duration);
+    return "";
+}
+
+}  // namespace
+
+std::string load_trajectory(TrajectoryDesc& desc, double fps, std::string& doubt) {
     if (desc.file.empty()) {
         desc.trajectory =
             std::make_shared<Trajectory>(desc.keyframes, desc.interpolation, desc.pacing);
@@ -489,12 +617,35 @@ std::string load_trajectory(TrajectoryDesc& desc, double fps) {
     }
     const PoseFile file = read_pose_file(desc.file, desc.format, desc.where);
     const std::vector<TimedPose> poses = all_placed(file, desc, fps);
-    if (const auto fault = Trajectory::first_fault(poses, desc.pacing))
+    if (const auto fault = Trajectory::first_fault(poses, desc.pacing)) {
+        if (!(poses[*fault].time > poses[*fault - 1].time))
+            throw InputError(fmt::format(
+                "{}.start: is so far from poses {} and {} of '{}' that seconds after it are the "
+                "same for both; give a time near that of the first pose",
+                desc.where, *fault, *fault + 1, desc.file.filename().string()));
         throw InputError(fmt::format(
             "{}: poses {} and {} of '{}' are at the same place, where no time passes at the given "
             "speed; leave 'speed' out",
             desc.where, *fault, *fault + 1, desc.file.filename().string()));
+    }
     desc.trajectory = std::make_shared<Trajectory>(poses, desc.interpolation, desc.pacing);
+    doubt = doubt_of_times(file.stamps, fps);
     return file.hash;
+}
+
+std::optional<PoseClock> read_pose_clock(const TrajectoryDesc& desc) {
+    if (desc.file.empty() || desc.format == PoseFormat::colmap ||
+        desc.format == PoseFormat::nerfstudio)
+        return std::nullopt;
+    PoseFile file = read_pose_file(desc.file, desc.format, desc.where);
+    PoseClock clock{zero_of(file, desc), {}};
+    if (desc.pacing.kind != Pacing::Kind::given) return clock;
+    const std::vector<TimedPose> poses = all_placed(file, desc, 1);
+    if (desc.trajectory &&
+        !std::ranges::equal(poses, desc.trajectory->times(), {}, &TimedPose::time))
+        throw InputError(fmt::format("{}: '{}' has changed since it was read; begin again",
+                                     desc.where, desc.file.filename().string()));
+    clock.stamps = std::move(file.stamps);
+    return clock;
 }
 }  // namespace uw

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -13,13 +14,13 @@ namespace uw {
 /// The poses of a file, world_from_body in the file's own world and units; a camera's axes are x
 /// right, y down, z forward.
 struct PoseFile {
-    /// The times are seconds after `first_time` where the file has times, and frame numbers where
+    /// The times are seconds after the first pose where the file has times, and frame numbers where
     /// it has none: those at the end of the images' names if these are otherwise the same, else
     /// their places from 0, in the order of the names.
-    std::vector<TimedPose> poses;  // at least one, strictly ascending
-    bool counts_frames = false;    // as said above
-    double first_time = 0;         // [s]
-    std::string hash;              // of the file's text
+    std::vector<TimedPose> poses;      // at least one, strictly ascending
+    bool counts_frames = false;        // as said above
+    std::vector<std::int64_t> stamps;  // the poses' own times [ns]; empty if they count frames
+    std::string hash;                  // of the file's text
 };
 
 /// The most poses that a file may have.
@@ -30,7 +31,11 @@ inline constexpr std::size_t k_most_poses = 1'000'000;
 /// IoError, and InputError of one line: a number that is missing or none, not a rotation, times
 /// that do not ascend, images of the same name, no pose or more than k_most_poses.
 ///
-/// - TUM: `timestamp tx ty tz qx qy qz qw`, world_from_body, '#' comments.
+/// Times are exact to the nanosecond, whatever the clock.
+///
+/// - TUM: `timestamp tx ty tz qx qy qz qw`, world_from_body, '#' comments; seconds, of which what
+/// is
+///   smaller than a nanosecond is rounded.
 /// - EuRoC (ASL): CSV of ns, x, y, z, qw, qx, qy, qz and perhaps more; world_from_body.
 /// - COLMAP's images.txt, camera_from_world, w first, every other line skipped; or images.bin, by
 ///   the name's ending, the same in binary form.
@@ -58,7 +63,24 @@ Pose placed(const Pose& pose, const TrajectoryDesc& desc);
 
 /// Reads the file of poses that `desc` names, if it names any, and makes its trajectory; poses
 /// without times are those of the frames, `fps` per second. Returns the hash of the file's text;
-/// empty for keyframes. Throws as read_pose_file does, and InputError for poses at the same place
-/// that a constant speed leaves no time for.
-std::string load_trajectory(TrajectoryDesc& desc, double fps);
+/// empty for keyframes. `doubt` becomes what suggests that the file's times are not of the unit
+/// that its format has, such as frame numbers; empty where nothing does. Throws as read_pose_file
+/// does, and InputError for a start from which poses cannot be told apart, and for poses at the
+/// same place that a constant speed leaves no time for.
+std::string load_trajectory(TrajectoryDesc& desc, double fps, std::string& doubt);
+
+/// A time in whole nanoseconds; none after the year 2116.
+std::optional<std::int64_t> nanoseconds(double seconds);
+
+/// What the clock of a file of poses says [ns]: whole numbers where seconds as doubles resolve 200
+/// ns of a time that is counted from 1970.
+struct PoseClock {
+    std::int64_t zero = 0;             // at the scene's time 0
+    std::vector<std::int64_t> stamps;  // at each pose; empty where a pace gives them other times
+};
+
+/// Reads the file that `desc` names for its clock; none for keyframes and files without times.
+/// Throws as load_trajectory, and InputError if the file is no longer what the trajectory was made
+/// of.
+std::optional<PoseClock> read_pose_clock(const TrajectoryDesc& desc);
 }  // namespace uw

@@ -164,19 +164,22 @@ struct Source {
 /// excess.
 class TreeBuilder : public YAML::EventHandler {
   public:
-    TreeBuilder(Source source, const YamlLimits& limits)
-        : source_(std::move(source)), limits_(limits) {}
+    /// `text` must outlive it.
+    TreeBuilder(std::string_view text, Source source, const YamlLimits& limits)
+        : text_(text), source_(std::move(source)), limits_(limits) {}
 
     std::optional<ConfigNode> take_root() { return std::move(root_); }
 
     void OnDocumentStart(const YAML::Mark& mark) override {
-        if (++documents_ > 1) {
-            fail(mark,
-                 fmt::format(
-                     "a second document starts here; a {} is one document: remove this, or the "
-                     "'---' above it",
-                     limits_.subject));
-        }
+        if (++documents_ < 2) return;
+        if (is_marked(mark.line))
+            fail(mark, fmt::format("a second document starts here; a {} is one document: remove "
+                                   "this, or the '---' above it",
+                                   limits_.subject));
+        fail(mark,
+             fmt::format("what is above is complete, and this is no part of it; write a {} as "
+                         "lines of 'key: value', and indent what continues a value",
+                         limits_.subject));
     }
     void OnDocumentEnd() override {}
     void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
@@ -217,6 +220,22 @@ class TreeBuilder : public YAML::EventHandler {
         std::optional<ConfigNode> key;  // map: a key whose value has not been parsed yet
     };
 
+    /// Whether a document is marked by "---" at a line, counted from 0, or among the blank ones and
+    /// comments above it.
+    bool is_marked(int line) const {
+        bool result = false;
+        std::string_view left = text_;
+        for (int i = 0; i <= line && !left.empty(); ++i) {
+            const std::string_view here = left.substr(0, left.find('\n'));
+            left.remove_prefix(std::min(here.size() + 1, left.size()));
+            const std::size_t first = here.find_first_not_of(" \t\r");
+            if (here.starts_with("---"))
+                result = true;
+            else if (i < line && first != std::string_view::npos && here[first] != '#')
+                result = false;
+        }
+        return result;
+    }
     [[noreturn]] void fail(const YAML::Mark& mark, std::string_view what) const {
         source_.fail(mark.line, mark.column, what);
     }
@@ -291,6 +310,7 @@ class TreeBuilder : public YAML::EventHandler {
         map.node.entries.push_back(std::move(entry));
     }
 
+    std::string_view text_;
     Source source_;
     YamlLimits limits_;
     int documents_ = 0;
@@ -383,7 +403,7 @@ std::string syntax_error(const YAML::Exception& error) {
 std::optional<ConfigNode> parse(std::string_view text, const Source& source,
                                 const YamlLimits& limits) {
     check_text(text, source, limits);
-    TreeBuilder builder(source, limits);
+    TreeBuilder builder(text, source, limits);
     // yaml-cpp 0.7 reads an unclosed quote as text up to the end of the file; an explicit end of
     // the document makes it an error
     std::istringstream stream{std::string(text) + "\n...\n"};

@@ -70,13 +70,17 @@ NodeRoute route_to(const ConfigNode& root, std::string_view path) {
         const std::size_t count =
             node->kind == ConfigNode::Kind::map ? node->entries.size() : node->items.size();
         std::size_t index = count;
-        if (steps[i].index) {
+        if (steps[i].is_any) return {};
+        if (steps[i].index && node->kind != ConfigNode::Kind::map) {
             if (node->kind == ConfigNode::Kind::sequence) index = *steps[i].index;
         } else if (node->kind == ConfigNode::Kind::map) {
             const std::string key = joined_key(*node, steps, i);
             for (index = 0; index < count && node->entries[index].key != key;) ++index;
         } else {
-            for (index = 0; index < count && entry_name(*node, index, walked) != steps[i].key;)
+            // Nothing here stands for more than one place, and entries may have no name.
+            const std::string& name = steps[i].key;
+            for (index = name.empty() ? count : 0;
+                 index < count && entry_name(*node, index, walked) != name;)
                 ++index;
         }
         if (index >= count) return {};

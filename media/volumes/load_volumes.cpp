@@ -199,6 +199,26 @@ std::string describe(const Affine& file_from_index) {
 
 }  // namespace
 
+namespace {
+
+/// Throws as grid_called and select_grid for grids of light and of velocity that are needed and not
+/// there. `header`: that of the volume's file.
+void check_other_grids(const VolumeDesc& frame, const VdbHeader& header) {
+    bool needs_motion = frame.motion && frame.motion->shutter > 0;
+    for (const EmissionDesc& emission : frame.emission) {
+        select_grid(header, emission.grid, emission.where, frame.level_sets);
+        needs_motion = needs_motion || emission.stimulus;
+    }
+    if (!needs_motion || !frame.motion) return;
+    const bool is_beside = frame.motion->file == frame.file;
+    const VdbHeader other =
+        is_beside ? VdbHeader() : read_vdb_header(frame.motion->file, frame.motion->where);
+    for (const std::string& name : frame.motion->grids)
+        grid_called(is_beside ? header : other, name, frame.motion->where);
+}
+
+}  // namespace
+
 void VolumeSequenceCheck::take(const VolumeDesc& frame) {
     const VdbHeader header = read_vdb_header(frame.file, frame.where);
     // Frames of an adaptive domain may lie at different places: each is moved to its own.
@@ -209,6 +229,7 @@ void VolumeSequenceCheck::take(const VolumeDesc& frame) {
         transforms.push_back(with_voxel_size(
             read_file_from_index(header, mapping.grid, mapping.where, frame.level_sets), frame,
             domain));
+    check_other_grids(frame, header);
     if (transforms_.empty()) {
         first_ = frame;
         transforms_ = std::move(transforms);

@@ -65,9 +65,10 @@ std::unique_ptr<ConcentrationField> load_volumes(
 /// Checks, from the files' headers alone, whether the frames of a volume are consistent.
 class VolumeSequenceCheck {
   public:
-    /// Takes the next frame. Throws InputError with the file's name if a grid that the scene uses
-    /// is missing or cannot be used (select_grid), or if its transform differs from that of the
-    /// first frame: the same voxel would then lie elsewhere; IoError.
+    /// Takes the next frame. Throws InputError with the file's name if a grid that the scene uses,
+    /// be it for concentrations, light or velocity, is missing or cannot be used (select_grid), or
+    /// if its transform differs from that of the first frame: the same voxel would then lie
+    /// elsewhere; IoError.
     void take(const VolumeDesc& frame);
 
   private:

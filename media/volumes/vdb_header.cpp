@@ -189,12 +189,12 @@ GridSummary read_nano_grid(ByteReader& in, std::uint16_t codec) {
     return grid;
 }
 
-/// Numbers grids that share a name, as in VDB files.
+/// Numbers grids that share a name, as in VDB files, and those that have none.
 void number_namesakes(std::vector<GridSummary>& grids) {
     std::map<std::string, int> count, next;
     for (const GridSummary& grid : grids) ++count[grid.base_name];
     for (GridSummary& grid : grids)
-        if (count[grid.base_name] > 1)
+        if (count[grid.base_name] > 1 || grid.base_name.empty())
             grid.name = fmt::format("{}[{}]", grid.base_name, next[grid.base_name]++);
 }
 
@@ -299,9 +299,10 @@ void set_names(GridSummary& grid, const std::string& unique_name) {
     grid.unique_name = unique_name;
     const auto separator = unique_name.rfind('\x1e');
     grid.base_name = replace_controls(unique_name.substr(0, separator));
-    grid.name = grid.base_name;
+    grid.name = grid.base_name.empty() ? "[0]" : grid.base_name;
     if (separator != std::string::npos)
-        grid.name += fmt::format("[{}]", replace_controls(unique_name.substr(separator + 1)));
+        grid.name = fmt::format("{}[{}]", grid.base_name,
+                                replace_controls(unique_name.substr(separator + 1)));
 }
 
 void set_type(GridSummary& grid, std::string type) {
@@ -430,25 +431,39 @@ std::string unusable_because(const GridSummary& grid, LevelSets level_sets) {
     return "";
 }
 
-const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
-                               const SourceLocation& where, LevelSets level_sets) {
-    const auto refuse = [&](const std::string& why) {
-        throw InputError(fmt::format("{}: {} ('{}' has {})", where, why, header.file.string(),
-                                     header.describe_grids()));
-    };
+namespace {
+
+[[noreturn]] void refuse_grid(const VdbHeader& header, const SourceLocation& where,
+                              const std::string& why) {
+    throw InputError(fmt::format("{}: {} ('{}' has {})", where, why, header.file.string(),
+                                 header.describe_grids()));
+}
+
+}  // namespace
+
+const GridSummary& grid_called(const VdbHeader& header, const std::string& name,
+                               const SourceLocation& where) {
     const GridSummary* found = nullptr;
     int namesakes = 0;
     for (const GridSummary& grid : header.grids)
         if (grid.name == name || grid.base_name == name) {
             if (namesakes++ == 0) found = &grid;
         }
-    if (namesakes == 0) refuse(fmt::format("no grid '{}'{}", name, did_you_mean(header, name)));
+    if (namesakes == 0)
+        refuse_grid(header, where, fmt::format("no grid '{}'{}", name, did_you_mean(header, name)));
     if (namesakes > 1)
-        refuse(fmt::format("{} grids are called '{}'; write '{}' for the first", namesakes, name,
-                           found->name));
-    const std::string why = unusable_because(*found, level_sets);
-    if (!why.empty()) refuse(fmt::format("grid '{}' {}", found->name, why));
+        refuse_grid(header, where,
+                    fmt::format("{} grids are called '{}'; write '{}' for the first", namesakes,
+                                name, found->name));
     return *found;
+}
+
+const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
+                               const SourceLocation& where, LevelSets level_sets) {
+    const GridSummary& grid = grid_called(header, name, where);
+    const std::string why = unusable_because(grid, level_sets);
+    if (!why.empty()) refuse_grid(header, where, fmt::format("grid '{}' {}", grid.name, why));
+    return grid;
 }
 
 }  // namespace uw

@@ -21,8 +21,9 @@ struct IndexBox {
 
 /// A VDB file's metadata for one of its grids, read without its voxels. Names are made printable.
 struct GridSummary {
-    std::string name;        // as used in scenes: "density", or "density[1]" if several share it
-    std::string base_name;   // "density" in both cases
+    /// As used in scenes: "density", "density[1]" if several share it, or "[0]" without a name.
+    std::string name;
+    std::string base_name;   // "density" in the first two cases
     std::string value_type;  // "float", "double", "vec3s", "ptdataidx32", ...
     bool half = false;       // saved with 16 bits per number
     std::string quantised;   // NanoVDB: "fp4", "fp8", "fp16" or "fpN" if saved so, else ""
@@ -117,14 +118,18 @@ class ByteReader {
 /// or has a version other than 220 to 224 (NanoVDB: 32).
 VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocation& where);
 
+/// The grid that a scene calls `name`, whatever it holds. Throws InputError, starting with `where`,
+/// for a name that is missing or shared by several grids; the message lists the file's grids.
+const GridSummary& grid_called(const VdbHeader& header, const std::string& name,
+                               const SourceLocation& where);
+
 /// Why the grid's values cannot be concentrations, to follow "grid 'x' "; "" if its header gives no
 /// such reason.
 std::string unusable_because(const GridSummary& grid, LevelSets level_sets = LevelSets::refused);
 
-/// The grid that a scene calls `name`, if it can be used as concentrations. Throws InputError,
-/// starting with `where`, for a name that is missing or shared by several grids, and for level
-/// sets that are not to become fog, points, vectors, other types, and transforms that are not
-/// affine; the message lists the file's grids.
+/// The grid that a scene calls `name`, if it can be used as concentrations. Throws as grid_called,
+/// and for level sets that are not to become fog, points, vectors, other types, and transforms that
+/// are not affine.
 const GridSummary& select_grid(const VdbHeader& header, const std::string& name,
                                const SourceLocation& where,
                                LevelSets level_sets = LevelSets::refused);

@@ -17,14 +17,6 @@ namespace {
 constexpr std::size_t k_all_at_once = std::numeric_limits<std::size_t>::max();
 constexpr double k_blender_voxels_per_second = 2.5;
 
-const GridSummary& find_grid(const VdbHeader& header, const std::string& name,
-                             const MotionDesc& motion) {
-    for (const GridSummary& grid : header.grids)
-        if (grid.name == name) return grid;
-    throw InputError(fmt::format("{}: no grid '{}' ('{}' has {})", motion.where, name,
-                                 header.file.string(), header.describe_grids()));
-}
-
 openvdb::GridBase::Ptr read_whole(const VdbHeader& header, const GridSummary& grid,
                                   const MotionDesc& motion) {
     openvdb::GridBase::Ptr whole;
@@ -68,7 +60,7 @@ VelocityField::VelocityField(const MotionDesc& motion, Centering centering)
     : shift_(centering == Centering::cell ? 0.5 : 0.0) {
     const VdbHeader header = read_vdb_header(motion.file, motion.where);
     if (motion.grids.size() == 1) {
-        const GridSummary& grid = find_grid(header, motion.grids[0], motion);
+        const GridSummary& grid = grid_called(header, motion.grids[0], motion.where);
         staggered_ = grid.grid_class == "staggered";
         vectors_ = read_vectors(header, grid, motion);
         for (auto value = vectors_->beginValueAll(); value; ++value) {
@@ -77,7 +69,8 @@ VelocityField::VelocityField(const MotionDesc& motion, Centering centering)
         }
     } else {
         for (const std::string& name : motion.grids)
-            numbers_.push_back(read_numbers(header, find_grid(header, name, motion), motion));
+            numbers_.push_back(
+                read_numbers(header, grid_called(header, name, motion.where), motion));
         for (const openvdb::FloatGrid::Ptr& grid : numbers_)
             for (auto value = grid->beginValueAll(); value; ++value) value.setValue(finite(*value));
     }

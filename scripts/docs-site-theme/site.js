@@ -8,6 +8,13 @@ const index = lunr(function () {
     this.field("text");
     searchIndex.docs.forEach((entry) => this.add(entry));
 });
+// A struct's heading is little but its name, which lunr takes for the better match: pages come before
+// the reference, which has a place of its own below them.
+const isReference = ({ref}) => /^docs\/(cpp|python-reference)\b/.test(ref);
+const mostPages = 10, mostOfReference = 6;
+const pagesFirst = (found) => [
+    ...found.filter((entry) => !isReference(entry)).slice(0, mostPages),
+    ...found.filter(isReference).slice(0, mostOfReference)];
 document.getElementById("query").addEventListener("input", (event) => {
     const words = lunr.tokenizer(event.target.value).map(String).filter(Boolean);
     const found = words.length === 0 ? [] : index.query((query) => {
@@ -16,7 +23,7 @@ document.getElementById("query").addEventListener("input", (event) => {
             query.term(word, {wildcard: lunr.Query.wildcard.TRAILING});
         }
     });
-    document.getElementById("results").replaceChildren(...found.slice(0, 12).map(({ref}) => {
+    document.getElementById("results").replaceChildren(...pagesFirst(found).map(({ref}) => {
         const link = document.createElement("a");
         link.href = siteRoot + ref;
         link.textContent = entries.get(ref).title;

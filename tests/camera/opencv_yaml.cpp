@@ -44,7 +44,9 @@ TEST_F(OpencvYaml, RefusesInOneLine) {
     expect_refused(replaced(ros, "0, 0, 1]", "0, 0]"), "rows x cols is 9, but data has 8 numbers");
     expect_refused(replaced(ros, "cols: 3", "cols: 1000000000"), "must be from 0 to 64");
     expect_refused(replaced(ros, "plumb_bob", "plum_bob"), "did you mean 'plumb_bob'?");
-    expect_refused(replaced(ros, "plumb_bob", "equidistant"), "expected 4 numbers, found 5");
+    expect_refused(replaced(replaced(ros, "plumb_bob", "equidistant"), "-0.001800282263098739, 0]",
+                            "-0.001800282263098739, 0.1]"),
+                   "has a coefficient beyond k1 to k4 (0.1)");
     expect_refused(replaced(ros, "plumb_bob", "rational_polynomial"),
                    "expected 8 numbers, found 5");
     expect_refused(

@@ -32,6 +32,20 @@ TEST(SceneUnknowns, AreTheNumbersOfLists) {
     EXPECT_EQ(scene.lamps[0].position.z, -1);
 }
 
+// As paths of --set, brackets included.
+TEST(SceneUnknowns, ArePathsAsOfSet) {
+    for (const char* key : {"lamps.*.position[2]", "lamps[*].position[2]", "lamps.left.position[2]",
+                            "lamps.'left'.position.[2]"}) {
+        const SceneUnknowns unknowns = unknowns_of({key});
+        ASSERT_EQ(unknowns.size(), 1U) << key;
+        EXPECT_EQ(unknowns.scene(std::vector{-1.0}).lamps[0].position.z, -1) << key;
+    }
+    EXPECT_NE(message_of<UsageError>([] {
+                  unknowns_of({"volumes.*.voxel_size"});
+              }).find("the scene has nothing of that kind"),
+              std::string::npos);
+}
+
 TEST(SceneUnknowns, EndWhereScenesDo) {
     const SceneUnknowns unknowns =
         unknowns_of({"water.absorption[0]", "water.scattering.phase.g", "lamps.left.position"});

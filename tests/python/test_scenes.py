@@ -41,6 +41,19 @@ class Practical(float):
         return f"Practical({float(self)})"
 
 
+def test_stars_stand_for_every_entry_and_quotes_hold_names():
+    lamp = {"position": [0, 0, 0], "intensity": 1}
+    scene = uwvdb.Scene(**{**SECTIONS, "lamps": [{"name": "front", **lamp}, lamp]})
+    scene["lamps.*.intensity"] = 7
+    assert [scene[f"lamps[{i}].intensity"] for i in range(2)] == [7, 7]
+    scene["lamps.'front'.intensity"] = 8
+    assert [scene[f"lamps[{i}].intensity"] for i in range(2)] == [8, 7]
+    with pytest.raises(uwvdb.InputError, match="nothing of that kind"):
+        scene["cameras.*.name"] = "a"
+    with pytest.raises(KeyError):
+        scene["lamps.*.intensity"]
+
+
 def test_sets_values_of_every_kind_of_python():
     scene = uwvdb.Scene.parse(TEXT)
     scene["lamps.left.intensity"] = np.array([1, 2, 3], dtype=np.float32)

@@ -97,6 +97,12 @@ TEST_P(InfoSamples, AreAdvisedRightly) {
     EXPECT_EQ(advice.at("up"), sample.up);
     EXPECT_EQ(advice.at("centering"), sample.centering);
     EXPECT_EQ(advice.at("scale"), sample.scale);
+    // The scene that is proposed can be read and its volume loaded, wherever that lies.
+    write("proposed.yaml", advice.at("scene").get<std::string>());
+    const test::ProgramResult rendered =
+        run({"render", "proposed.yaml", "-o", "out.exr", "--size", "16x9", "--quality", "draft",
+             "--set", "render.scattering=single"});
+    EXPECT_EQ(rendered.exit_code, 0) << rendered.err;
 }
 
 std::vector<Advice> samples_where_available() {

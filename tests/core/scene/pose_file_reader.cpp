@@ -54,7 +54,7 @@ TEST_F(PoseFiles, TumHasTheCameraInTheWorldWithWLast) {
                                    "1311868165.25  4 5 6   0 0 0 1");
     ASSERT_EQ(file.poses.size(), 2U);
     EXPECT_FALSE(file.counts_frames);
-    EXPECT_EQ(file.first_time, 1311868164.5);
+    EXPECT_EQ(file.stamps[0], 1311868164500000000);
     EXPECT_EQ(file.poses[0].time, 0);
     EXPECT_EQ(file.poses[1].time, 0.75);
     EXPECT_EQ(file.poses[0].pose.position, (Point3{1, 2, 3}));
@@ -72,7 +72,7 @@ TEST_F(PoseFiles, EurocHasNanosecondsAndWFirst) {
                                    "1403636580838555649, 4.5, -1.7, 0.8, 1, 0, 0, 0\n");
     ASSERT_EQ(file.poses.size(), 2U);
     EXPECT_EQ(file.poses[1].time, 1e-9);  // which seconds as doubles do not resolve
-    EXPECT_NEAR(file.first_time, 1403636580.838555648, 1e-6);
+    EXPECT_EQ(file.stamps, (std::vector<std::int64_t>{1403636580838555648, 1403636580838555649}));
     EXPECT_EQ(file.poses[0].pose.position, (Point3{4.5, -1.7, 0.8}));
     expect_axes(file.poses[0].pose, {0, 0, -1}, {0, 1, 0}, {1, 0, 0});
 }
@@ -195,6 +195,106 @@ TEST_F(PoseFiles, OtherNamesAreCountedInTheirOrder) {
               (std::array{0.0, 1.0, 1.0}));
     EXPECT_EQ(times("a 7.png", "a 9.png"), (std::array{7.0, 9.0, 1.0}));
     EXPECT_EQ(times("v.2/x7", "v.2/x9"), (std::array{7.0, 9.0, 1.0}));
+}
+
+// Decimal numbers are read as they are written, to the nearest nanosecond.
+TEST_F(PoseFiles, TimesAreExact) {
+    const auto stamp = [&](PoseFormat format, const std::string& time) {
+        const bool is_tum = format == PoseFormat::tum;
+        return read(format, time + (is_tum ? " 0 0 0 0 0 0 1\n" : ",0,0,0,1,0,0,0\n")).stamps[0];
+    };
+    for (const auto& [text, ns] : std::vector<std::pair<std::string, std::int64_t>>{
+             {"1403636579.763555584", 1403636579763555584},
+             {"1.403636579763555584e9", 1403636579763555584},
+             {"1403636579763.555584E-3", 1403636579763555584},
+             {"0", 0},
+             {"-0.0", 0},
+             {"0e30", 0},
+             {"-1.000000001", -1000000001},
+             {"5.", 5000000000},
+             {"0.0000000005", 1},
+             {"0.00000000049999999999999999", 0},
+             {"-0.0000000015", -2},
+             {"1e-300", 0},
+             {"1.9999999999", 2000000000},
+             {"9007199.254740993", 9007199254740993},
+             {"4611686018.427387904", 4611686018427387904}}) {
+        EXPECT_EQ(stamp(PoseFormat::tum, text), ns) << text;
+    }
+    for (const auto& [text, ns] : std::vector<std::pair<std::string, std::int64_t>>{
+             {"1403636579763555585", 1403636579763555585},
+             {"1403636579763555584.0", 1403636579763555584},
+             {"1.403636579763555584e+18", 1403636579763555584},
+             {"9007199254740993", 9007199254740993},
+             {"-9007199254740993", -9007199254740993},
+             {"-5", -5}})
+        EXPECT_EQ(stamp(PoseFormat::euroc, text), ns) << text;
+}
+
+// Times of a unit that is not the format's are refused with what they may be.
+TEST_F(PoseFiles, TimesOfAnotherUnitAreTold) {
+    for (const char* time : {"1403636579763555584", "1403636579763555", "1403636579763"})
+        expect_refused(PoseFormat::tum, std::string(time) + " 0 0 0 0 0 0 1\n",
+                       "which is after the year 2116; divide times in nanoseconds by 1e9");
+    expect_refused(PoseFormat::euroc, "1403636579.763555584,0,0,0,1,0,0,0\n",
+                   "multiply times in seconds by 1e9, or, if qw comes last, write format: tum");
+    const auto doubt = [&](PoseFormat format, const std::string& text, double fps) {
+        TrajectoryDesc desc;
+        desc.file = folder_.write("poses", text);
+        desc.format = format;
+        std::string found;
+        load_trajectory(desc, fps, found);
+        return found;
+    };
+    const auto lines = [](std::int64_t first, std::int64_t step, const std::string& rest) {
+        std::string text;
+        for (std::int64_t i = 0; i < 12; ++i) text += std::to_string(first + i * step) + rest;
+        return text;
+    };
+    const std::string tum = " 0 0 0 0 0 0 1\n", euroc = ",0,0,0,1,0,0,0\n";
+    EXPECT_NE(doubt(PoseFormat::tum, lines(0, 1, tum), 25).find("as the numbers of frames are"),
+              std::string::npos);
+    EXPECT_NE(doubt(PoseFormat::tum, lines(1, 1, tum), 25).find("11 s, 276 frames"),
+              std::string::npos);
+    EXPECT_NE(doubt(PoseFormat::tum, lines(0, 40, tum), 25).find("times in milliseconds by 1000"),
+              std::string::npos);
+    EXPECT_NE(doubt(PoseFormat::euroc, lines(0, 1, euroc), 25).find("less than a frame"),
+              std::string::npos);
+    // What is plausible: one frame a second, a clock of 1970, steps of 40 ms.
+    EXPECT_EQ(doubt(PoseFormat::tum, lines(0, 1, tum), 1), "");
+    EXPECT_EQ(doubt(PoseFormat::tum, lines(1311868164, 1, tum), 25), "");
+    EXPECT_EQ(doubt(PoseFormat::euroc, lines(0, 40000000, euroc), 25), "");
+}
+
+// Seconds as doubles resolve 240 ns of a time since 1970: a start that far from poses closer than
+// that is refused, and not called a fault of the speed.
+TEST_F(PoseFiles, AStartThatCannotTellPosesApartIsRefused) {
+    TrajectoryDesc desc;
+    desc.file = folder_.write("poses",
+                              "1403636580838555648,0,0,0,1,0,0,0\n"
+                              "1403636580838555649,1,0,0,1,0,0,0\n");
+    desc.format = PoseFormat::euroc;
+    desc.start = 0;
+    desc.where = "scene.yaml:3:5: trajectory";
+    std::string doubt;
+    EXPECT_NE(message_of<InputError>([&] {
+                  load_trajectory(desc, 25, doubt);
+              }).find("scene.yaml:3:5: trajectory.start: is so far from poses 1 and 2"),
+              std::string::npos);
+    desc.start = 1e12;
+    EXPECT_NE(message_of<InputError>([&] {
+                  load_trajectory(desc, 25, doubt);
+              }).find("is after the year 2116"),
+              std::string::npos);
+    desc.start.reset();
+    EXPECT_NO_THROW(load_trajectory(desc, 25, doubt));
+    const auto clock = read_pose_clock(desc);
+    ASSERT_TRUE(clock);
+    EXPECT_EQ(clock->zero, 1403636580838555648);
+    EXPECT_EQ(clock->stamps.size(), 2U);
+    // A file that was changed in between is another trajectory.
+    folder_.write("poses", "1403636580838555648,0,0,0,1,0,0,0\n");
+    EXPECT_THROW(read_pose_clock(desc), InputError);
 }
 
 TEST_F(PoseFiles, QuaternionsAreNormalised) {

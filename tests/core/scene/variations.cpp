@@ -167,6 +167,10 @@ TEST(Variations, NothingIsDrawnTwiceHoweverItsPathIsWritten) {
                   .find("draws both 'lamps.left.position' and 'lamps[0].position[2]', of which "
                         "one is part of the other; draw one of them"),
               std::string::npos);
+    EXPECT_NE(refusal("variations: {keys: {'lamps.*.power': {uniform: [1, 2]}, lamps.left.power: "
+                      "{uniform: [0, 1]}}}")
+                  .find("draws both 'lamps.*.power' and 'lamps.left.power'"),
+              std::string::npos);
     const VariationsDesc apart =
         of_keys("lamps.left.power: {uniform: [0, 1]}\n    'lamps[1].power': {uniform: [0, 1]}");
     EXPECT_EQ(apart.keys.size(), 2U);

@@ -89,6 +89,11 @@ TEST(YamlDocument, saysWhereATabIndents) {
 
 TEST(YamlDocument, refusesWhatHasNoOneMeaning) {
     expect_error("a: 1\n---\nb: 2\n", "s.yaml:2:1: a second document starts here");
+    expect_error("a: 1\n---\n# why\n\nb: 2\n", "a second document starts here");
+    // Nothing marks a document where words are no keys.
+    expect_error("some words\n\n#pinax\nand 0.5\n",
+                 "s.yaml:4:1: what is above is complete, and this is no part of it");
+    expect_error("---\nsome words\n# more\nand 0.5\n", "what is above is complete");
     expect_error("a: {b: 1,\n  b: 2}\n",
                  "s.yaml:2:3: a.b: the key is given twice (first on line 1); remove one");
     expect_error("x:\n - {k: 1, k: 2}\n", "s.yaml:2:11: x[0].k: the key is given twice");
