@@ -122,10 +122,13 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
     }
 }
 
-SkyRadiance radiance_of(const std::optional<Sky>& sky) {
+SeenSky seen_sky(const std::optional<Sky>& sky, const SceneDesc& desc) {
     if (!sky) return {};
-    return [sky = *sky, sky_from_world = glm::transpose(sky->world_from_sky())](
-               const Vector3& towards) { return sky.radiance(sky_from_world * towards); };
+    const auto lamp =
+        std::ranges::find_if(desc.lamps, [](const LampDesc& each) { return each.sky != nullptr; });
+    return {[sky = *sky, sky_from_world = glm::transpose(sky->world_from_sky())](
+                const Vector3& towards) { return sky.radiance(sky_from_world * towards); },
+            static_cast<std::size_t>(lamp - desc.lamps.begin())};
 }
 
 // Where the water's surface reflects, light meets it.
@@ -139,7 +142,7 @@ void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
     scene.shadow_casters = parts.shadow_casters;
     if (scene.sky || scene.water_surface->has_waves())
         scene.surfaces = std::make_shared<SubmergedSurfaces>(scene.surfaces, *scene.water_surface,
-                                                             radiance_of(scene.sky));
+                                                             seen_sky(scene.sky, desc));
     else
         scene.surfaces = parts.shadow_casters;
     scene.field = parts.field;
@@ -293,9 +296,9 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
         moved.surfaces = moved.shadow_casters = below;
         if (moved.water_surface) {
             moved.surfaces = std::make_shared<SubmergedSurfaces>(below, *moved.water_surface,
-                                                                 radiance_of(moved.sky));
+                                                                 seen_sky(moved.sky, desc));
             moved.shadow_casters = std::make_shared<SubmergedSurfaces>(
-                below, WaterSurface(without_waves(*desc.water.surface)), SkyRadiance());
+                below, WaterSurface(without_waves(*desc.water.surface)), SeenSky());
         }
     }
     place_lamps(desc, moved);

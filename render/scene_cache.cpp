@@ -251,7 +251,7 @@ const SubmergedParts& SceneCache::submerged(
             KeptSubmerged{calm,
                           surfaces,
                           field,
-                          {std::make_shared<SubmergedSurfaces>(surfaces, surface, SkyRadiance()),
+                          {std::make_shared<SubmergedSurfaces>(surfaces, surface, SeenSky()),
                            std::make_shared<SubmergedField>(field, surface, false),
                            std::make_shared<SubmergedField>(field, surface, true)}};
     }

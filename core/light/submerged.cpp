@@ -22,7 +22,7 @@ bool is_above(const WaterSurface& surface, const Point3& x, const Point3& other)
 }  // namespace
 
 SubmergedSurfaces::SubmergedSurfaces(std::shared_ptr<const Surfaces> below,
-                                     const WaterSurface& surface, SkyRadiance sky)
+                                     const WaterSurface& surface, SeenSky sky)
     : below_(std::move(below)),
       textures_(textures_of(*below_)),
       surface_(surface),
@@ -47,7 +47,7 @@ bool SubmergedSurfaces::meet_water_surface(const Ray& ray, double s_end, bool fo
     hit.normal = hit.geometric_normal = -meeting->normal;
     hit.object_id = static_cast<std::uint32_t>(names_.objects.size());
     hit.is_water_surface = true;
-    if (!sky_) return true;
+    if (!sky_.radiance) return true;
     const std::optional<Vector3> out = surface_.into_air(ray.direction, meeting->normal);
     // Steep waves may refract light from below the horizon.
     hit.has_material = out && glm::dot(*out, surface_.up()) > 0;
@@ -76,10 +76,15 @@ SurfaceMaterial SubmergedSurfaces::material(const SurfaceHit& hit) const {
     const double rise = std::sqrt(std::max(0.0, 1 - hit.u * hit.u - hit.v * hit.v));
     const Vector3 towards =
         hit.u * surface_.across() + hit.v * surface_.along() + rise * surface_.up();
-    material.emission = sky_(towards);
+    material.emission = sky_.radiance(towards);
     const double cosine = -glm::dot(towards, hit.geometric_normal);
     material.emission *= (1 - surface_.reflectance_from_air(cosine)) * surface_.n() * surface_.n();
     return material;
+}
+
+std::optional<std::size_t> lamp_of_emission(const Surfaces& surfaces, const SurfaceHit& hit) {
+    if (!hit.is_water_surface) return std::nullopt;
+    return dynamic_cast<const SubmergedSurfaces&>(surfaces).sky_lamp();
 }
 
 double SubmergedSurfaces::hit_distance(const Ray& ray) const {

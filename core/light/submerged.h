@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/base/spectrum.h"
@@ -16,6 +18,12 @@ namespace uw {
 /// band [W m^-2 sr^-1].
 using SkyRadiance = std::function<Spectrum(const Vector3& from)>;
 
+/// The sky as it is seen from below the water.
+struct SeenSky {
+    SkyRadiance radiance;  // empty: it is black
+    std::size_t lamp = 0;  // the scene's lamp that is its light, by index
+};
+
 /// What lies below a water surface, and the surface seen from below, at which all rays that come
 /// from the water end (SurfaceHit::is_water_surface). It emits what it lets through of the sky;
 /// that it reflects is for those to follow who meet it.
@@ -24,13 +32,15 @@ using SkyRadiance = std::function<Spectrum(const Vector3& from)>;
 /// they are those of light that is reflected on its way.
 class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
   public:
-    /// `sky` may be empty: it is black.
     SubmergedSurfaces(std::shared_ptr<const Surfaces> below, const WaterSurface& surface,
-                      SkyRadiance sky);
+                      SeenSky sky);
+
+    /// The lamp whose light the water's surface emits.
+    std::size_t sky_lamp() const { return sky_.lamp; }
 
     bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const override;
     SurfaceMaterial material(const SurfaceHit& hit) const override;
-    bool may_emit() const override { return sky_ || below_->may_emit(); }
+    bool may_emit() const override { return sky_.radiance || below_->may_emit(); }
     double hit_distance(const Ray& ray) const override;
     bool occluded(const Point3& from, const Point3& to) const override;
     void closest_hits(std::span<const Ray> rays, double s_end, std::span<SurfaceHit> hits,
@@ -57,9 +67,13 @@ class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
     std::shared_ptr<const Surfaces> below_;
     const TexturedSurfaces* textures_;  // of `below_`; null: there are none
     WaterSurface surface_;
-    SkyRadiance sky_;
+    SeenSky sky_;
     SurfaceNames names_;
 };
+
+/// The lamp, by its index, whose light a surface emits where it is hit: the sky, at the water's
+/// surface. None for all others, whose light is their own. Precondition: it emits.
+std::optional<std::size_t> lamp_of_emission(const Surfaces& surfaces, const SurfaceHit& hit);
 
 /// Concentrations below a water surface, and above it those of its mirror image.
 class SubmergedField final : public ConcentrationField {

@@ -10,6 +10,7 @@
 #include "core/geometry/surface_reflection.h"
 #include "core/geometry/textured_surfaces.h"
 #include "core/image/cryptomatte.h"
+#include "core/light/submerged.h"
 
 namespace uw {
 
@@ -384,10 +385,13 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
     const SurfaceReflection reflection(*scene_.surfaces, surface, band_count());
     add(result.transmittance.first(bands), to_camera);
     if (reflection.emits()) {
+        const auto sky =
+            result.lamps.empty() ? std::nullopt : lamp_of_emission(*scene_.surfaces, hit);
         for (std::size_t b = 0; b < bands; ++b) {
             const double emission = weight * reflection.emission()[b] * seen;
             result.clean[b] += emission;
             result.direct[b] += emission * to_camera[b];
+            if (sky) result.lamps[*sky][b] += emission * to_camera[b];
         }
     }
     Spectrum brdf;

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "core/geometry/surface_reflection.h"
+#include "core/light/submerged.h"
 
 namespace uw {
 
@@ -47,6 +48,7 @@ void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
             leaving[b] += reflection.emission()[b];
             arriving[b] = reflection.emission()[b] * to_camera[b];
         }
+        term.lamp = lamp_of_emission(*scene.surfaces, surface.hit).value_or(k_no_lamp);
         terms.add(term);
     }
     term.reflections = 1;

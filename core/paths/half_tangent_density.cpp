@@ -3,6 +3,8 @@
 #include <bit>
 #include <cmath>
 
+#include "core/paths/path_segment.h"
+
 namespace uw {
 
 namespace {
@@ -80,6 +82,21 @@ double HalfTangentDensity::invert(double mass) const {
     const double sum = cell.value + root;
     return cell.begin +
            (sum > 0 ? std::min(cells_[i + 1].begin - cell.begin, 2 * rest / sum) : 0.0);
+}
+
+Vector3 direction_around(const Vector3& axis, double h, double azimuth) {
+    const auto [u, v] = Tangents(axis);
+    const double norm = 1 / (1 + h * h);
+    const double sine = 2 * h * norm, cosine = (1 - h * h) * norm;
+    const double phi = 2 * std::numbers::pi * azimuth;
+    return glm::normalize(cosine * axis + sine * (std::cos(phi) * u + std::sin(phi) * v));
+}
+
+double half_tangent_between(const Vector3& a, const Vector3& b) {
+    const Vector3 difference = a - b, sum = a + b;
+    const double square = glm::dot(sum, sum);
+    if (!(square > 1e-14)) return 1e7;  // opposite
+    return std::max(1e-16, std::sqrt(glm::dot(difference, difference) / square));
 }
 
 }  // namespace uw

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
+
+#include "core/base/vector_math.h"
 
 namespace uw {
 
@@ -60,5 +63,19 @@ class HalfTangentDensity {
     double mass_ = 0;
     double guides_per_mass_ = 0;
 };
+
+/// The direction (unit) at the angle of h = tan(angle / 2) from `axis`; `azimuth` is a share of a
+/// turn around it.
+Vector3 direction_around(const Vector3& axis, double h, double azimuth);
+
+/// tan(angle / 2) between unit vectors, accurate for small angles; from 1e-16 to 1e7.
+double half_tangent_between(const Vector3& a, const Vector3& b);
+
+/// By what a density per unit of h is multiplied to be one per solid angle if all azimuths are
+/// alike: dOmega = 2 pi sin(psi) dpsi = 8 pi h / (1 + h^2)^2 dh.
+inline double per_solid_angle(double h) {
+    const double square = 1 + h * h;
+    return square * square / (8 * std::numbers::pi * h);
+}
 
 }  // namespace uw

@@ -217,7 +217,8 @@ void LampField::Solver::find_next_order() {
 }
 
 LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-                     double least_albedo, double greatest_albedo, int orders) {
+                     double least_albedo, double greatest_albedo, int orders)
+    : phase_(direction), line_(line), line_in_table_(line.mass() - line.mass_to(k_angles.front())) {
     // An order that adds less than this is the last; what lies near the end of the table counts for
     // nothing in that.
     constexpr double k_enough = 1e-2, k_counting = 0.5;
@@ -287,7 +288,7 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
             const float* of_angle = &all_[(k_albedos / 2 * nr + i) * nh + a.index];
             values.push_back(std::exp((1 - a.t) * static_cast<double>(of_angle[0]) +
                                       a.t * static_cast<double>(of_angle[1])) *
-                             2 / (1 + h * h));
+                             below_table(h) * 2 / (1 + h * h));
         }
         lobes_.emplace_back(values);
     }
@@ -322,6 +323,11 @@ double LampField::look_up(const std::vector<float>& table, const Place& place, d
         sum += place.weight[i] * (of_angle[0] + t * (of_angle[1] - of_angle[0]));
     }
     return static_cast<double>(std::exp(sum));
+}
+
+double LampField::below_table(double h) const {
+    if (!(h < k_angles.front()) || !(line_in_table_ > 0)) return 1;
+    return (line_.mass() - line_.mass_to(h)) / line_in_table_;
 }
 
 double LampField::flux(const Place& place) const {

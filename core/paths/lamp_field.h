@@ -40,7 +40,7 @@ class LampField {
     /// The radiance that arrives from the angle `h` to the lamp, of all orders and without the
     /// first; and the mean over the phase function around that direction, of all orders.
     double radiance(const Place& place, double h) const {
-        return look_up(all_, place, h) * over_sine(place, h);
+        return look_up(all_, place, h) * over_sine(place, h) * below_table(h);
     }
     double multiple(const Place& place, double h) const {
         return look_up(more_, place, h) * over_sine(place, h);
@@ -53,6 +53,9 @@ class LampField {
     double flux(const Place& place) const;
     /// A density over h in the shape of the radiance.
     const HalfTangentDensity& lobe(const Place& place) const { return lobes_[place.lobe]; }
+    /// The phase function, as a density over h: parallel light that is scattered once has its
+    /// shape, where that of a lamp, which is near, has the shape of its integrals.
+    const HalfTangentDensity& phase() const { return phase_; }
 
   private:
     class Solver;
@@ -62,7 +65,12 @@ class LampField {
         return (1 + bounded * bounded) / (2 * bounded * place.radius);
     }
     double look_up(const std::vector<float>& table, const Place& place, double h) const;
+    // The light at angles that the tables do not reach, relative to that at their first: what is
+    // scattered once there decides, which grows for ever where a phase function does.
+    double below_table(double h) const;
 
+    HalfTangentDensity phase_, line_;
+    double line_in_table_ = 1;  // of `line_`, beyond the tables' first angle
     double least_albedo_ = 0, albedo_step_ = 1;
     std::vector<float> decay_;                // of the logarithms beyond the table, by albedo
     std::vector<float> all_, more_, source_;  // logarithms, [(albedo, radius, h)]

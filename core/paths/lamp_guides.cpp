@@ -71,13 +71,6 @@ GuideTables::GuideTables(const WaterOptics& of_optics, const ScatteringTables& o
         constituents_scattering.push_back(sum(constituent.per_unit));
 }
 
-double half_tangent_between(const Vector3& a, const Vector3& b) {
-    const Vector3 difference = a - b, sum = a + b;
-    const double square = glm::dot(sum, sum);
-    if (!(square > 1e-14)) return 1e7;  // opposite
-    return std::max(1e-16, std::sqrt(glm::dot(difference, difference) / square));
-}
-
 void LampGuides::find(const GuideTables& tables, const Point3& x, const Spectrum& weights) {
     tables_ = &tables;
     guides_.clear();
@@ -93,7 +86,7 @@ void LampGuides::find(const GuideTables& tables, const Point3& x, const Spectrum
         const double length = glm::length(to_lamp);
         if (!(length > 0)) continue;
         tables.lamps.column_to_lamp(j, x, column_);
-        double sum = 0, tau = 0, albedo = 0;
+        double sum = 0, tau = 0, albedo = 0, scattered_once = 0;
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             const Depth depth(tables, b, length, column_);
             const double share = weights[b] / all * lamps[j].axis_intensity()[b] *
@@ -101,6 +94,9 @@ void LampGuides::find(const GuideTables& tables, const Point3& x, const Spectrum
             sum += share;
             tau += share * depth.tau;
             albedo += share * depth.albedo;
+            if (lamps[j].sunlight())
+                scattered_once += weights[b] / all * lamps[j].axis_intensity()[b] *
+                                  std::exp(-depth.tau) * depth.tau * depth.albedo;
         }
         if (!(sum > 0)) continue;
         Guide& guide = guides_.emplace_back();
@@ -115,29 +111,31 @@ void LampGuides::find(const GuideTables& tables, const Point3& x, const Spectrum
         const double geometry =
             guided_intensity(lamps[j], -to_lamp) / guided_spread(lamps[j], length);
         guide.irradiance = sum * geometry;
+        guide.scattered_once = scattered_once;
         guide.scale = guide.intensity * guide.place.radius * guide.place.radius * geometry;
     }
 }
 
-template <class LookUp>
-double LampGuides::sum(const Vector3& direction, const LookUp& look_up) const {
-    double light = 0;
-    for (const Guide& guide : guides_)
-        light +=
-            guide.scale * look_up(guide.place, half_tangent_between(guide.direction, direction));
-    return light;
-}
-
 double LampGuides::radiance(const Vector3& direction) const {
     const LampField& field = tables_->scattering.field();
-    return sum(direction,
-               [&](const LampField::Place& place, double h) { return field.radiance(place, h); });
+    double light = 0;
+    for (const Guide& guide : guides_) {
+        const double h = half_tangent_between(guide.direction, direction);
+        light += guide.scale * field.radiance(guide.place, h);
+        if (guide.scattered_once > 0)
+            light += guide.scattered_once / field.phase().mass() * field.phase().density(h) *
+                     per_solid_angle(h);
+    }
+    return light;
 }
 
 double LampGuides::multiple(const Vector3& direction) const {
     const LampField& field = tables_->scattering.field();
-    return sum(direction,
-               [&](const LampField::Place& place, double h) { return field.multiple(place, h); });
+    double light = 0;
+    for (const Guide& guide : guides_)
+        light += guide.scale *
+                 field.multiple(guide.place, half_tangent_between(guide.direction, direction));
+    return light;
 }
 
 double LampGuides::source(const Point3& y, const Vector3& direction) const {

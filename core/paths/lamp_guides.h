@@ -44,6 +44,9 @@ class LampGuides {
         double attenuation = 0;      // mean, on the way [1/m]
         double albedo = 0;
         double scale = 0;  // of the radiance: intensity times squared depth over squared distance
+        // Of a sun, the irradiance of what the water scatters once, by any angle: next to its
+        // direction that has the shape of the phase function. 0 for all others.
+        double scattered_once = 0;
         LampField::Place place;
     };
 
@@ -59,9 +62,6 @@ class LampGuides {
     double source(const Point3& y, const Vector3& direction) const;
 
   private:
-    template <class LookUp>
-    double sum(const Vector3& direction, const LookUp& look_up) const;
-
     const GuideTables* tables_ = nullptr;
     std::vector<Guide> guides_;
     std::vector<double> column_;
@@ -72,8 +72,5 @@ class LampGuides {
 /// [W m^-2 sr^-1].
 double guessed_reflection(const GuideTables& tables, const SurfaceHit& hit,
                           const Spectrum& weights);
-
-/// tan(angle / 2) between unit vectors, accurate for small angles; at most 1e7.
-double half_tangent_between(const Vector3& a, const Vector3& b);
 
 }  // namespace uw

@@ -32,6 +32,9 @@ class PathTracer {
     PathTracer(PathTracer&&) = delete;
     PathTracer& operator=(PathTracer&&) = delete;
 
+    /// Of the scene's medium.
+    const ScatteringTables& scattering() const { return *scattering_; }
+
     /// Prepares a camera ray, with as many paths of each kind as seem worth it: `hit` is the first
     /// surface along it, null for none; `surface_light` an estimate of that surface's radiance, per
     /// band, that guides the paths; may be empty.

@@ -13,22 +13,6 @@ namespace {
 
 constexpr double k_glossy_share = 0.5;  // of the directions drawn on glossy surfaces
 
-// The direction at tan(angle / 2) = h from `axis`.
-Vector3 direction_around(const Vector3& axis, double h, double azimuth) {
-    const auto [u, v] = Tangents(axis);
-    const double norm = 1 / (1 + h * h);
-    const double sine = 2 * h * norm, cosine = (1 - h * h) * norm;
-    const double phi = 2 * std::numbers::pi * azimuth;
-    return glm::normalize(cosine * axis + sine * (std::cos(phi) * u + std::sin(phi) * v));
-}
-
-// From a density per h, at any azimuth, to one per solid angle:
-// dOmega = 2 pi sin(psi) dpsi = 8 pi h / (1 + h^2)^2 dh.
-double per_solid_angle(double h) {
-    const double square = 1 + h * h;
-    return square * square / (8 * std::numbers::pi * h);
-}
-
 Vector3 cosine_direction(const Vector3& normal, double u, double azimuth) {
     return direction_around(normal, std::sqrt(u) / (1 + std::sqrt(1 - u)), azimuth);
 }
@@ -119,8 +103,15 @@ double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expe
         if (k < of_lobes) {
             double u = (k + u_lobe) / of_lobes;
             const LampGuides::Guide& guide = guides[choose(guide_cumulative_, u).index];
-            const HalfTangentDensity& lobe = field.lobe(guide.place);
-            candidate.direction = direction_around(guide.direction, lobe.invert(u * lobe.mass()),
+            const HalfTangentDensity* lobe = &field.lobe(guide.place);
+            if (guide.scattered_once > 0) {
+                u *= 2;
+                if (u >= 1) {
+                    u -= 1;
+                    lobe = &field.phase();
+                }
+            }
+            candidate.direction = direction_around(guide.direction, lobe->invert(u * lobe->mass()),
                                                    wrapped(a_lobe + k * k_golden));
         } else {
             const int i = k - of_lobes;
@@ -153,7 +144,8 @@ double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expe
     return sum;
 }
 
-// The density of the lobes that candidates are drawn from [1/sr].
+// The density of the lobes that candidates are drawn from [1/sr]: a sun has two, of which one is
+// its light that is scattered once.
 double PathVertex::guide_density(const Vector3& direction) const {
     const LampField& field = tables_->scattering.field();
     double sum = 0, before = 0;
@@ -161,7 +153,10 @@ double PathVertex::guide_density(const Vector3& direction) const {
         const LampGuides::Guide& guide = guides_.all()[j];
         const HalfTangentDensity& lobe = field.lobe(guide.place);
         const double h = half_tangent_between(guide.direction, direction);
-        sum += (guide_cumulative_[j] - before) / lobe.mass() * lobe.density(h) * per_solid_angle(h);
+        double density = lobe.density(h) / lobe.mass();
+        if (guide.scattered_once > 0)
+            density = 0.5 * (density + field.phase().density(h) / field.phase().mass());
+        sum += (guide_cumulative_[j] - before) * density * per_solid_angle(h);
         before = guide_cumulative_[j];
     }
     return sum / before;

@@ -28,8 +28,8 @@ using Exponents = std::array<double, PointSpread::k_frequencies>;
 class PhaseTransfer {
   public:
     explicit PhaseTransfer(const PhaseFunction& phase) {
-        constexpr int k_steps = 200;
-        constexpr double k_narrowest = 1e-5;
+        constexpr int k_steps = 240;
+        constexpr double k_narrowest = 1e-6;  // below which no phase function varies
         const double growth = std::pow(k_widest_scattering / k_narrowest, 1.0 / k_steps);
         double begin = 0, end = k_narrowest;
         for (int step = 0; step <= k_steps; ++step) {

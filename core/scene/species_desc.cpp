@@ -73,7 +73,7 @@ void read_diameters(const ConfigValue& value, double least, double greatest, dou
 
 namespace {
 
-constexpr double k_least = 10e-9, k_greatest = 5e-3;
+constexpr double k_least = k_least_diameter, k_greatest = k_greatest_diameter;
 constexpr double k_least_sigma = 1.02;  // narrower ones have halos finer than the tables' angles
 
 SizesDesc read_sizes(const ConfigValue& value, const SceneContext& context) {
@@ -97,17 +97,12 @@ SizesDesc read_sizes(const ConfigValue& value, const SceneContext& context) {
                 sizes.exponent =
                     entry->within(0, 10, "give Junge's exponent, of numbers per diameter: 4");
             break;
-        case Type::lognormal: {
+        case Type::lognormal:
             sizes.median = read_diameter(map.require("median", k_example), k_least, k_greatest);
             if (const auto entry = map.find("sigma"))
                 sizes.sigma = entry->within(k_least_sigma, 10,
                                             "give the geometric standard deviation, such as 1.6");
-            // What is beyond adds less than 1e-4 to cross section or volume.
-            const double deviation = std::log(sizes.sigma);
-            sizes.least = sizes.median * std::exp(deviation * (2 * deviation - 4));
-            sizes.greatest = sizes.median * std::exp(deviation * (3 * deviation + 4));
             break;
-        }
         case Type::gamma:
             sizes.mode = read_diameter(map.require("mode", k_example), k_least, k_greatest);
             sizes.exponent = 3;
@@ -125,8 +120,6 @@ SizesDesc read_sizes(const ConfigValue& value, const SceneContext& context) {
             read_diameters(*entry, k_least, k_greatest, sizes.least, sizes.greatest);
         else if (needs_ends)
             value.fail(std::string("has no diameter, its least and greatest; ") + k_example);
-        sizes.least = std::max(sizes.least, k_least);
-        sizes.greatest = std::min(sizes.greatest, k_greatest);
     }
     map.finish("sizes of type '" + type.node().scalar + "'");
     return sizes;

@@ -13,6 +13,9 @@
 
 namespace uw {
 
+/// The diameters of particles of a species are from here to there [m].
+inline constexpr double k_least_diameter = 10e-9, k_greatest_diameter = 5e-3;
+
 /// How the diameters of a species' particles are distributed. f(D) dD is the number of particles
 /// with diameters in dD, up to a factor.
 struct SizesDesc {
@@ -23,7 +26,9 @@ struct SizesDesc {
         table       // volume per class of a particle sizer, in a file
     };
     Type type = Type::junge;
-    double least = 0, greatest = 0;  ///< diameters [m]; of a table: 0, its own
+    /// Diameters [m]. 0: of a table, its own; a log-normal distribution has none, and
+    /// concentrations by number count all of it.
+    double least = 0, greatest = 0;
     double exponent = 4;
     double median = 0, sigma = 2;  ///< by number [m], > 1
     double mode = 0;               ///< the most frequent diameter [m]

@@ -103,8 +103,9 @@ double horner(std::span<const double> c, double x) {
 ///     nu = (3-mu)/2,  d = 4 sin^2(psi/2) / (3 (n-1)^2),  d180 = d at psi = pi.
 ///
 /// The first term is 0/0 at d = 1; near it the quotients are evaluated by their binomial series. p
-/// is unbounded as psi approaches 0. Below `k_smallest_angle` it is held at its mean over that cone
-/// (known in closed form), so that it is finite everywhere and the integral is still 1.
+/// is unbounded as psi approaches 0. Below `k_smallest_angle` it goes on linear in sin^2(psi/2),
+/// without a step and with the integral over that cone (known in closed form), so that it is finite
+/// everywhere and the whole integral is still 1.
 class FournierForand final : public PhaseFunction {
   public:
     /// `n` in (1, 10]; `mu` in (3, 5), where the total scattering of the size distribution is
@@ -128,7 +129,8 @@ class FournierForand final : public PhaseFunction {
     double n_, mu_, nu_;
     double delta_180_;
     double back_;  // factor of (3 cos^2 psi - 1)
-    double core_;  // p inside k_smallest_angle
+    // p at sin^2(psi/2) = s2 inside k_smallest_angle is core_ - core_slope_ s2.
+    double core_, core_slope_;
     std::array<double, k_series_terms> series_a_{}, series_b_{};
 };
 
@@ -148,15 +150,17 @@ FournierForand::FournierForand(double n, double mu)
     binomials_from_2(nu_ + 1, series_b_);
     back_ = -power_quotient(delta_180_, nu_) / (16 * std::numbers::pi * std::pow(delta_180_, nu_));
 
-    // Fraction scattered below k_smallest_angle (Mobley, from Fournier and Jonasz 1999), spread
-    // evenly over the cone's solid angle 4 pi sin^2(psi/2).
+    // Fraction scattered below k_smallest_angle (Mobley, from Fournier and Jonasz 1999), over the
+    // cone's solid angle 4 pi sin^2(psi/2): the mean of p there, halfway between both ends.
     const double s = std::sin(0.5 * k_smallest_angle);
     const double s2 = s * s;
     const double delta = delta_180_ * s2;
     const double fraction =
         (power_quotient(delta, nu_ + 1) - power_quotient(delta, nu_) * s2) / std::pow(delta, nu_) +
         2 * std::numbers::pi * back_ * (1 - 2 * s2) * 4 * s2 * (1 - s2);
-    core_ = fraction / (4 * std::numbers::pi * s2);
+    const double mean = fraction / (4 * std::numbers::pi * s2), edge = value(s2);
+    core_ = 2 * mean - edge;
+    core_slope_ = (core_ - edge) / s2;
 }
 
 double FournierForand::value(double sin2_half) const {
@@ -180,7 +184,7 @@ double FournierForand::value(double sin2_half) const {
 void FournierForand::evaluate(std::span<const double> psi, std::span<double> p) const {
     for (std::size_t i = 0; i < psi.size(); ++i) {
         const double s = std::sin(0.5 * psi[i]);
-        p[i] = psi[i] < k_smallest_angle ? core_ : value(s * s);
+        p[i] = psi[i] < k_smallest_angle ? core_ - core_slope_ * s * s : value(s * s);
     }
 }
 

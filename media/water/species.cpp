@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <mutex>
 #include <numbers>
 #include <optional>
@@ -31,6 +32,8 @@ class VolumeBySize {
   public:
     explicit VolumeBySize(const SpeciesDesc& species) : sizes_(species.sizes) {
         if (sizes_.type == SizesDesc::Type::table) read_table(species);
+        const bool has_ends = sizes_.greatest > 0;
+        if (!has_ends) find_ends_of_lognormal();
         first_ = std::log(sizes_.least), last_ = std::log(sizes_.greatest);
         constexpr int k_steps = 4096;
         const double step = (last_ - first_) / k_steps;
@@ -45,13 +48,26 @@ class VolumeBySize {
                 fmt::format("{}: its size distribution is 0 everywhere; mend size", species.where));
         factor_ = 1 / sum;
         mean_volume_ = sum / number;
+        if (!has_ends) mean_volume_ = volume_share(first_, last_) * mean_volume_of_lognormal();
     }
 
     double first() const { return first_; }
     double last() const { return last_; }
     double greatest() const { return sizes_.greatest; }
     double operator()(double log_diameter) const { return factor_ * value(log_diameter); }
-    double mean_volume() const { return mean_volume_; }  // of a particle [m^3]
+    /// Of a particle [m^3]; of one that is among those left out, 0.
+    double mean_volume() const { return mean_volume_; }
+
+    /// The shares of the volume of a log-normal distribution without ends in particles that are too
+    /// small and too large to be allowed.
+    struct LeftOut {
+        double small = 0, large = 0;
+    };
+    LeftOut left_out() const {
+        constexpr double k_all = std::numeric_limits<double>::infinity();
+        return {volume_share(-k_all, std::log(k_least_diameter)),
+                volume_share(std::log(k_greatest_diameter), k_all)};
+    }
 
     /// All that the distribution depends on.
     std::string text() const {
@@ -68,6 +84,39 @@ class VolumeBySize {
     }
 
   private:
+    // Numbers times the diameter to the power k are another log-normal distribution, k times the
+    // square of its deviation farther up. Cross sections have k from 2 to 3, or 6 where particles
+    // are smaller than the wavelength. There is less than 1e-4 of them beyond 4 deviations.
+    void find_ends_of_lognormal() {
+        constexpr double k_reach = 4, k_wavelength = 1e-6;
+        const double deviation = std::log(sizes_.sigma);
+        const auto place_of = [&](double diameter) {
+            return std::log(diameter / sizes_.median) / deviation;
+        };
+        const double highest =
+            std::max(3 * deviation, std::min(6 * deviation, place_of(k_wavelength)));
+        const double last = std::min(highest + k_reach, place_of(k_greatest_diameter));
+        const double first =
+            std::max(std::min(2 * deviation, last) - k_reach, place_of(k_least_diameter));
+        sizes_.least = sizes_.median * std::exp(deviation * first);
+        sizes_.greatest = sizes_.median * std::exp(deviation * last);
+    }
+
+    /// The share of the volume of a log-normal distribution between two logarithms of diameters.
+    double volume_share(double first, double last) const {
+        const double deviation = std::log(sizes_.sigma);
+        const double middle = std::log(sizes_.median) + 3 * deviation * deviation;
+        const double a = (first - middle) / (std::numbers::sqrt2 * deviation);
+        const double b = (last - middle) / (std::numbers::sqrt2 * deviation);
+        // Tails are not differences from 1.
+        return a > 0 ? 0.5 * (std::erfc(a) - std::erfc(b)) : 0.5 * (std::erfc(-b) - std::erfc(-a));
+    }
+
+    double mean_volume_of_lognormal() const {
+        const double deviation = std::log(sizes_.sigma);
+        return volume(sizes_.median) * std::exp(4.5 * deviation * deviation);
+    }
+
     void read_table(const SpeciesDesc& species) {
         curve_ = read_csv_file(sizes_.file, species.where).curve("diameter_um", "volume");
         for (double& diameter : curve_.x) {
@@ -463,6 +512,28 @@ std::vector<double> measured_wavelengths(const SpeciesDesc& species) {
 
 std::string unit_of(const SpeciesDesc& species) {
     return species.vsf ? "sample" : "ppm";
+}
+
+std::optional<std::string> sizes_warning(const SpeciesDesc& species) {
+    constexpr double k_enough = 1e-3;
+    const SizesDesc& sizes = species.sizes;
+    if (species.vsf || species.kopelevich || sizes.type != SizesDesc::Type::lognormal ||
+        sizes.greatest > 0)
+        return std::nullopt;
+    const auto [small, large] = VolumeBySize(species).left_out();
+    std::string where;
+    if (small > k_enough)
+        where =
+            fmt::format("{:.2g} % of its volume is in particles smaller than 10 nm", 100 * small);
+    if (large > k_enough)
+        where += fmt::format("{}{:.2g} % of its volume is in particles larger than 5 mm",
+                             where.empty() ? "" : " and ", 100 * large);
+    if (where.empty()) return std::nullopt;
+    return fmt::format(
+        "{}: its size distribution is cut off, as {}: concentrations by volume, mass and turbidity "
+        "are those of the rest, those by number count all of them; give a median or a sigma that "
+        "has fewer, or write diameter: [10 nm, 5 mm] where there are no others",
+        species.where, where);
 }
 
 double concentration_of(const SpeciesDesc& species, const SpeciesAmount& amount,

@@ -54,6 +54,10 @@ std::vector<std::filesystem::path> files_of(const SpeciesDesc& species);
 /// In what concentrations of a species are counted: "ppm" by volume, or the "sample" measured.
 std::string unit_of(const SpeciesDesc& species);
 
+/// A line that says how much of the volume of a log-normal size distribution without ends is in
+/// particles too small or too large to be computed; none if that is less than 0.1 %.
+std::optional<std::string> sizes_warning(const SpeciesDesc& species);
+
 /// The concentration in that unit. 1 NTU is as much as scatters SpeciesDesc::ntu_scattering at 550
 /// nm in this water.
 double concentration_of(const SpeciesDesc& species, const SpeciesAmount& amount,

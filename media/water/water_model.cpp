@@ -243,7 +243,11 @@ void Builder::add_species(std::size_t species, double ppm, double absorbing_ppm,
     const std::optional<KopelevichClass>& kopelevich = species_[species].kopelevich;
     const bool is_first = !known_species_[species];
     known_species_[species] = true;
-    if (is_first) warn_of_held_wavelengths(species);
+    if (is_first) {
+        warn_of_held_wavelengths(species);
+        if (auto warning = sizes_warning(species_[species]))
+            model.warnings.push_back(std::move(*warning));
+    }
     for (std::size_t i = 0; i < band_count_; ++i) {
         ShareCallback tell;
         if (progress_)

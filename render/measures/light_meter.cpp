@@ -16,6 +16,7 @@
 #include "core/geometry/water_surface.h"
 #include "core/paths/path_tracer.h"
 #include "core/paths/path_walk.h"
+#include "core/paths/scattering_tables.h"
 #include "render/scene_assembly.h"
 
 namespace uw {
@@ -23,8 +24,8 @@ namespace uw {
 namespace {
 
 constexpr int k_batches = 16;
-// Rays towards a lamp: as many in each octave of the tangent of half the angle, from here to 1.
-constexpr double k_least_half_tangent = 1e-4;
+// No phase function varies below this tangent of half the angle.
+constexpr double k_least_half_tangent = 0x1p-22;
 // The share of rays that are drawn evenly.
 constexpr double k_even_share = 0.5;
 // A single direction needs fewer rays than all together.
@@ -80,44 +81,54 @@ std::vector<Beam> beams_at(const AssembledScene& scene, const Point3& x) {
     return beams;
 }
 
-/// Directions from which light arrives: a share of them drawn evenly, the rest around beams, with
-/// a density that falls as the square of the angle.
+/// A density of rays around a lamp over h = tan(psi / 2). Half of it is as much in each octave up
+/// to h = 1: light that a lamp nearby scatters falls as 1/psi. The other half has the shape of the
+/// water's phase functions: next to the direction of a sun, light that is scattered once has it,
+/// however steep it is.
+HalfTangentDensity density_around_lamps(const ScatteringTables& tables) {
+    const double octaves = std::log(1 / k_least_half_tangent);
+    std::vector<double> values;
+    for (const double h : HalfTangentDensity::nodes()) {
+        double value = h > 1 ? 0 : 1 / (octaves * std::max(h, k_least_half_tangent));
+        for (std::size_t m = 0; m < tables.phase_count(); ++m)
+            value +=
+                tables.shares[m] * tables.directions[m].density(h) / tables.directions[m].mass();
+        values.push_back(value);
+    }
+    return HalfTangentDensity(values);
+}
+
+/// Directions from which light arrives: a share of them drawn evenly, the rest around beams.
 class Directions {
   public:
-    explicit Directions(const std::vector<Beam>& beams) : beams_(beams) {
+    /// `around`: density_around_lamps.
+    Directions(const std::vector<Beam>& beams, const HalfTangentDensity& around)
+        : beams_(beams), around_(around) {
         for (const Beam& beam : beams) total_ += beam.weight;
     }
 
     /// Uses three random numbers.
     Vector3 draw(PathRandom& random) const {
-        const double of_kind = random.next(), u = random.next(),
-                     v = 2 * std::numbers::pi * random.next();
+        const double of_kind = random.next(), u = random.next(), azimuth = random.next();
         const double even = even_share();
         if (of_kind < even) {
             const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z));
+            const double v = 2 * std::numbers::pi * azimuth;
             return {r * std::cos(v), r * std::sin(v), z};
         }
         double target = (of_kind - even) / (1 - even) * total_;
         std::size_t i = 0;
         while (i + 1 < beams_.size() && target >= beams_[i].weight) target -= beams_[i++].weight;
-        const double h = k_least_half_tangent * std::pow(1 / k_least_half_tangent, u);
-        const double cosine = (1 - h * h) / (1 + h * h), sine = 2 * h / (1 + h * h);
-        const Tangents tangents(beams_[i].towards);
-        return cosine * beams_[i].towards +
-               sine * (std::cos(v) * tangents.u + std::sin(v) * tangents.v);
+        return direction_around(beams_[i].towards, around_.invert(u * around_.mass()), azimuth);
     }
 
     /// Of what draw returns [1/sr].
     double density(const Vector3& direction) const {
         const double even = even_share();
         double around = 0;
-        const double octaves = std::log(1 / k_least_half_tangent);
         for (const Beam& beam : beams_) {
-            const Vector3 sum = direction + beam.towards, difference = direction - beam.towards;
-            const double h2 = glm::dot(difference, difference) / glm::dot(sum, sum);
-            if (h2 < k_least_half_tangent * k_least_half_tangent || !(h2 <= 1)) continue;
-            // dOmega = 8 pi h / (1 + h^2)^2 dh, and h is drawn with the density 1 / (octaves h).
-            around += beam.weight * (1 + h2) * (1 + h2) / (8 * std::numbers::pi * h2 * octaves);
+            const double h = half_tangent_between(direction, beam.towards);
+            around += beam.weight * around_.density(h) / around_.mass() * per_solid_angle(h);
         }
         return even / (4 * std::numbers::pi) + (total_ > 0 ? (1 - even) * around / total_ : 0);
     }
@@ -126,6 +137,7 @@ class Directions {
     double even_share() const { return total_ > 0 ? k_even_share : 1; }
 
     const std::vector<Beam>& beams_;
+    const HalfTangentDensity& around_;
     double total_ = 0;
 };
 
@@ -308,11 +320,13 @@ constexpr std::array k_readings{&MeterReading::down,          &MeterReading::up,
 }  // namespace
 
 LightMeter::LightMeter(const AssembledScene& scene)
-    : scene_(scene), transport_(make_path_transport(scene, scene.scattering)) {}
+    : scene_(scene),
+      transport_(make_path_transport(scene, scene.scattering)),
+      around_lamps_(density_around_lamps(transport_.paths->scattering())) {}
 
 MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) const {
     const std::vector<Beam> beams = beams_at(scene_, x);
-    const Directions directions(beams);
+    const Directions directions(beams, around_lamps_);
     const int in_batch = std::max(1, rays / k_batches);
     const double typical = typical_radiance(scene_, transport_, directions, x);
     const std::uint64_t seed = seed_at(x);
@@ -371,7 +385,8 @@ std::optional<WaterLeaving> LightMeter::read_water_leaving(const Point3& x, int 
     if (std::ranges::all_of(result.irradiance.first(bands), [](double e) { return !(e > 0); }))
         return std::nullopt;
     const std::vector<Beam> beams = beams_at(scene_, below);
-    const double typical = typical_radiance(scene_, transport_, Directions(beams), below);
+    const double typical =
+        typical_radiance(scene_, transport_, Directions(beams, around_lamps_), below);
     std::array<Spectrum, k_batches> batches;
     parallel_for(batches.size(), [&](std::size_t batch) {
         RadianceEstimate estimate(scene_, transport_, typical);

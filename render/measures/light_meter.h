@@ -7,6 +7,7 @@
 #include "core/base/spectrum.h"
 #include "core/base/vector_math.h"
 #include "core/light/integrator_kind.h"
+#include "core/paths/half_tangent_density.h"
 #include "render/assembled_scene.h"
 
 namespace uw {
@@ -55,6 +56,7 @@ class LightMeter {
   private:
     const AssembledScene& scene_;
     LightTransport transport_;
+    HalfTangentDensity around_lamps_;  // of rays, over the angle to each lamp
 };
 
 }  // namespace uw

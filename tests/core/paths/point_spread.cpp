@@ -76,6 +76,40 @@ TEST_F(PointSpreads, HaveTheTransferFunctionOfSmallAngles) {
     }
 }
 
+// Of a phase function that grows for ever towards its forward direction a third may lie below a
+// hundred thousandth of a radian. At the least frequency the transfer function has all of what is
+// scattered by less than 1 rad.
+TEST_F(PointSpreads, HoldTheSteepestForwardPeaks) {
+    const double n = 1.05;
+    for (const double mu : {3.1, 3.5835, 4.5}) {
+        medium_.phase_functions = {fournier_forand(n, mu)};
+        const PointSpread spread(medium_, *intervals_, k_farthest);
+        // In steps of the share of the scattering in closed form (Fournier and Jonasz 1999).
+        const double nu = (3 - mu) / 2, d180 = 4 / (3 * (n - 1) * (n - 1));
+        const auto share_below = [&](double psi) {
+            const double s = std::sin(psi / 2), d = d180 * s * s;
+            return ((1 - std::pow(d, nu + 1)) - (1 - std::pow(d, nu)) * s * s) /
+                       ((1 - d) * std::pow(d, nu)) +
+                   (1 - std::pow(d180, nu)) / (8 * (d180 - 1) * std::pow(d180, nu)) *
+                       std::cos(psi) * std::sin(psi) * std::sin(psi);
+        };
+        constexpr int k_steps = 2001;
+        double small_angles = share_below(1e-6);
+        for (int i = 0; i < k_steps; ++i) {
+            const double begin = std::pow(1e-6, 1 - static_cast<double>(i) / k_steps);
+            const double end = std::pow(1e-6, 1 - static_cast<double>(i + 1) / k_steps);
+            const double middle = std::sqrt(begin * end);
+            small_angles += (share_below(end) - share_below(begin)) * middle / std::sin(middle);
+        }
+        EXPECT_GT(share_below(1e-5), mu < 3.2 ? 0.3 : 0);
+        const std::size_t last = spread.distances().size() - 1;
+        for (const std::size_t band : {0U, 1U}) {
+            const double truth = std::expm1(b(band) * k_farthest * small_angles);
+            EXPECT_NEAR(transfer(spread, 0, band, last, 0), truth, 0.002 * truth) << mu;
+        }
+    }
+}
+
 // From any distance on it is that of the water between there and the surface, times what the water
 // in front of it does not add: exp(x_1 + x_2) - 1 = (exp(x_1) - 1) exp(x_2) + (exp(x_2) - 1).
 TEST_F(PointSpreads, SplitLightByTheScatteringNearestToTheCamera) {

@@ -1,6 +1,7 @@
 // ctest labels: unit analytic
 #include "media/water/species.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -159,6 +160,151 @@ TEST(Species, MeanVolumesAreThoseOfTheDistributions) {
                 1, 1e-5);
 }
 
+WaterDesc water(const std::string& text) {
+    return read_water_overrides({"water=" + text});
+}
+
+SpeciesDesc lognormal(double median_um, double sigma, double n = 1.15) {
+    return water(fmt::format("{{species: {{haze: {{size: {{type: lognormal, median: {} um, sigma: "
+                             "{}}}, index: {}}}}}}}",
+                             median_um, sigma, n))
+        .species[0];
+}
+
+/// The share of the volume of a log-normal distribution below a diameter.
+double volume_below(double diameter, double median, double sigma) {
+    const double deviation = std::log(sigma);
+    return 0.5 * std::erfc((3 * deviation - std::log(diameter / median) / deviation) /
+                           std::numbers::sqrt2);
+}
+
+// Numbers are those of the whole distribution, whatever part of it has to be computed: the mean
+// volume is pi/6 median^3 e^(4.5 ln^2 sigma), less what is smaller than 10 nm or larger than 5 mm.
+TEST(Species, NumbersOfALognormalDistributionCountAllOfIt) {
+    for (const double sigma : {1.02, 1.2, 1.8, 3.0, 5.0, 10.0})
+        for (const double median : {0.01, 0.05, 2.0, 300.0, 5000.0}) {
+            const SpeciesDesc species = lognormal(median, sigma);
+            const double deviation = std::log(sigma);
+            const double whole = std::numbers::pi / 6 * std::pow(median * 1e-6, 3) *
+                                 std::exp(4.5 * deviation * deviation);
+            const double share = volume_below(5e-3, median * 1e-6, sigma) -
+                                 volume_below(10e-9, median * 1e-6, sigma);
+            const double ppm = concentration_of(species, {0, 1e6, SpeciesAmount::Unit::number}, {});
+            // What is beyond 4 deviations of the volume is left out.
+            EXPECT_NEAR(ppm / (1e12 * whole), share, 1e-4 * share) << median << " " << sigma;
+        }
+}
+
+// b of particles that are counted is the integral over f(D) dD with the whole of f, by Simpson's
+// rule over 12 deviations about what scatters most, in ln D. Small particles scatter as D^6: of
+// those of 20 nm nearly all is due to a few that are 10 times as large.
+TEST(Species, NumbersScatterAsTheIntegralOverALognormalDistribution) {
+    struct Sizes {
+        double median_um, sigma;
+    };
+    for (const auto& [median, sigma] :
+         {Sizes{0.02, 1.8}, Sizes{0.02, 3}, Sizes{0.3, 1.2}, Sizes{1, 1.8}, Sizes{1, 2.5}}) {
+        const double deviation = std::log(sigma),
+                     wave_number = 2 * std::numbers::pi * 1.34 / 550e-9;
+        double sum = 0;
+        constexpr int k_steps = 3000;
+        const double first = std::log(10e-9),
+                     last = std::log(median * 1e-6) + deviation * (6 * deviation + 6);
+        const double end = std::min(last, std::log(200e-6)), step = (end - first) / k_steps;
+        for (int i = 0; i <= k_steps; ++i) {
+            const double x = first + i * step, d = std::exp(x);
+            const double t = (x - std::log(median * 1e-6)) / deviation;
+            const double density =
+                std::exp(-t * t / 2) / (deviation * std::sqrt(2 * std::numbers::pi));
+            const MieScattering mie({wave_number * d / 2, {1.15, 0}, {}});
+            sum += (i == 0 || i == k_steps ? 1
+                    : i % 2 == 1           ? 4
+                                           : 2) *
+                   step / 3 * density * std::numbers::pi / 4 * d * d * mie.scattering_efficiency();
+        }
+        const SpeciesDesc species = lognormal(median, sigma);
+        const double ppm = concentration_of(species, {0, 1, SpeciesAmount::Unit::number}, {});
+        // species_optics states 1e-4, as much again lies beyond the ends.
+        EXPECT_NEAR(ppm * species_optics(species, 550, 1.34).scattering / sum, 1, 4e-4)
+            << median << " um, " << sigma;
+    }
+}
+
+// Where ends are given, numbers are those between them: the moments of the truncated distribution.
+TEST(Species, NumbersBetweenEndsAreThoseOfTheTruncatedDistribution) {
+    const auto mean_volume = [](const std::string& size) {
+        const WaterDesc desc = water("{species: {a: {size: " + size + ", index: 1.1}}}");
+        return 1e-6 * concentration_of(desc.species[0], {0, 1, SpeciesAmount::Unit::number}, {});
+    };
+    // By Simpson's rule in ln D, from 0.5 to 50 um.
+    const auto truth = [](const auto& density) {
+        constexpr int k_steps = 4000;
+        double numbers = 0, volumes = 0;
+        for (int i = 0; i <= k_steps; ++i) {
+            const double d = 0.5e-6 * std::pow(100.0, static_cast<double>(i) / k_steps);
+            const double weight = (i == 0 || i == k_steps ? 1
+                                   : i % 2 == 1           ? 4
+                                                          : 2) *
+                                  density(d) * d;
+            numbers += weight;
+            volumes += weight * std::numbers::pi / 6 * d * d * d;
+        }
+        return volumes / numbers;
+    };
+    for (const double sigma : {1.02, 1.8, 3.0, 10.0})
+        EXPECT_NEAR(mean_volume(fmt::format("{{type: lognormal, median: 2 um, sigma: {}, diameter: "
+                                            "[0.5 um, 50 um]}}",
+                                            sigma)) /
+                        truth([&](double d) {
+                            const double t = std::log(d / 2e-6) / std::log(sigma);
+                            return std::exp(-t * t / 2) / d;
+                        }),
+                    1, 1e-4)
+            << sigma;
+    for (const double exponent : {0.0, 3.0, 4.0, 5.5})
+        EXPECT_NEAR(mean_volume(fmt::format(
+                        "{{type: junge, exponent: {}, diameter: [0.5 um, 50 um]}}", exponent)) /
+                        truth([&](double d) { return std::pow(d, -exponent); }),
+                    1, 1e-4)
+            << exponent;
+    for (const double exponent : {0.1, 3.0, 100.0})
+        EXPECT_NEAR(
+            mean_volume(fmt::format(
+                "{{type: gamma, mode: 5 um, exponent: {}, diameter: [0.5 um, 50 um]}}", exponent)) /
+                truth([&](double d) {
+                    return std::exp(exponent * (std::log(d / 5e-6) - d / 5e-6 + 1));
+                }),
+            1, 1e-4)
+            << exponent;
+}
+
+TEST(Species, WarnsOfTheVolumeThatSizesLeaveOut) {
+    const auto warnings = [](const std::string& size) {
+        return build_water_model(water("{species: {haze: {size: " + size +
+                                       ", index: {n: 1.1, k: 1}}}, particles: {haze: 0.1}, "
+                                       "bands: [550]}"),
+                                 {})
+            .warnings;
+    };
+    EXPECT_TRUE(warnings("{type: lognormal, median: 2 um, sigma: 1.8}").empty());
+    EXPECT_TRUE(
+        warnings("{type: lognormal, median: 12 nm, sigma: 1.5, diameter: [10 nm, 5 um]}").empty());
+    const auto small = warnings("{type: lognormal, median: 12 nm, sigma: 1.2}");
+    ASSERT_EQ(small.size(), 1U);
+    EXPECT_NE(small[0].find(fmt::format("{:.2g} % of its volume is in particles smaller than 10 nm",
+                                        100 * volume_below(10e-9, 12e-9, 1.2))),
+              std::string::npos)
+        << small[0];
+    EXPECT_NE(small[0].find("water.species.haze"), std::string::npos) << small[0];
+    const SpeciesDesc large = lognormal(1000, 2);
+    const std::string text = sizes_warning(large).value_or("");
+    EXPECT_NE(text.find(fmt::format("{:.2g} % of its volume is in particles larger than 5 mm",
+                                    100 * (1 - volume_below(5e-3, 1e-3, 2)))),
+              std::string::npos)
+        << text;
+    EXPECT_FALSE(sizes_warning(junge(1.1, 1, 10)));
+}
+
 // Junge's distribution of exponent 4 has the same volume in each class of a sizer; indices of a
 // table are interpolated at the wavelength in vacuum.
 TEST(Species, OfTablesAreThoseOfFormulas) {
@@ -184,10 +330,6 @@ TEST(Species, OfTablesAreThoseOfFormulas) {
                   (void)species_optics(tables, 550, 1.34);
               }).find("scene.yaml:1:1: water.species.test: sizes.csv"),
               std::string::npos);
-}
-
-WaterDesc water(const std::string& text) {
-    return read_water_overrides({"water=" + text});
 }
 
 // The index's k falls by e^(-slope (lambda - 550 nm)). Weakly absorbing spheres, even the largest
