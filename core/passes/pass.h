@@ -123,7 +123,7 @@ class Pass {
     /// Adds its step to the rendering, if it takes part in each pixel. All passes begin before the
     /// first is run.
     virtual void begin(Rendering& rendering);
-    /// Does its work. Throws Interrupted, and InputError if there is not enough memory.
+    /// Does its work. Throws Interrupted, and as require_memory.
     virtual void run(Rendering& rendering) = 0;
 
   private:

@@ -124,7 +124,7 @@ class ExposureMean {
     using RowShare = std::function<double(int row)>;
 
     /// Adds to `mean`, whose values are 0; it outlives this object, as do `plan` and `colour`.
-    /// Throws InputError if there is not enough memory.
+    /// Throws as require_memory.
     ExposureMean(const LayerPlan& plan, const BandColour& colour, Film& mean);
 
     /// Includes the image of a part: with the same channels, and of the window all rows that have
