@@ -14,6 +14,7 @@
 
 #include "cli/console.h"
 #include "cli/process.h"
+#include "core/base/available_memory.h"
 #include "edit/server/edit_server.h"
 #include "edit/session/edit_session.h"
 

@@ -22,6 +22,7 @@
 #include "cli/shell.h"
 #include "cli/validate/validate_command.h"
 #include "cli/water_command.h"
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "media/water/species_cache.h"
@@ -89,6 +90,8 @@ int main(int argc, char** argv) {
         return fail(uw::k_exit_interrupted, stop.what());
     } catch (const std::bad_alloc& error) {
         return fail(uw::k_exit_internal, uw::line_of(error));
+    } catch (const uw::OutOfMemory& error) {
+        return fail(uw::k_exit_internal, error.what());
     } catch (const std::exception& error) {
         const std::string what = fmt::format(
             "{}; this is a fault of the program: please report it, with what 'uwvdb info SCENE "

@@ -3,6 +3,7 @@
 #include <exception>
 #include <utility>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 
 namespace py = pybind11;
@@ -29,6 +30,8 @@ void bind_errors(py::module_& /*module*/) {
             raise("UsageError", fault);
         } catch (const Interrupted& fault) {
             raise("Interrupted", fault);
+        } catch (const OutOfMemory& fault) {
+            PyErr_SetString(PyExc_MemoryError, fault.what());
         }
     });
 }

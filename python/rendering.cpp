@@ -486,6 +486,7 @@ class RendererObject : public RunClient {
         engine_.emplace();
     }
 
+    bool reads_light_note() const override { return true; }
     WantedImage want(std::size_t /*place*/, ImageScene& /*scene*/) override {
         return {wanted_->options};
     }

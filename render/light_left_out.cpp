@@ -2,9 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
+#include <utility>
 
+#include "core/base/parallel.h"
 #include "core/light/integrator_table.h"
 #include "core/passes/path_pass.h"
 #include "core/paths/path_tracer.h"
@@ -16,26 +20,90 @@ namespace uw {
 
 namespace {
 
-constexpr int k_paths = 8;  // of each kind at each place
-// Light scattered more often guides no path; finding it takes the most time.
-constexpr int k_guiding_orders = 8;
+// Guides need to be no better for so few paths.
+constexpr LampField::Fineness k_guides{.orders = 8, .is_coarse = true};
+
+// The work of a vertex of a path is about that of six camera rays that single scattering is
+// rendered from: this is a tenth of the image's.
+constexpr double k_vertices_per_ray = 1.0 / 64;
+constexpr double k_fewest_vertices = 2000, k_most_vertices = 20'000;
+constexpr std::size_t k_most_places = 1152;
+constexpr std::size_t k_places_at_once = 4;  // between two looks at the work done
+constexpr double k_vertices_of_place = 2;    // the work there besides that of its paths
+
+/// Points in the unit square, any number of which fill it evenly (Roberts 2018, "The unreasonable
+/// effectiveness of quasirandom sequences").
+std::pair<double, double> even_place(std::size_t number) {
+    double whole = 0;
+    const auto n = static_cast<double>(number);
+    return {std::modf(0.5 + 0.7548776662466927 * n, &whole),
+            std::modf(0.5 + 0.5698402909980532 * n, &whole)};
+}
+
+double most_work(const PixelRenderer& pixels) {
+    const RaySource& rays = pixels.rays();
+    return std::clamp(k_vertices_per_ray * rays.width() * rays.height() * pixels.samples(),
+                      k_fewest_vertices, k_most_vertices);
+}
+
+/// Light per place of the image: emitted, scattered or reflected no more than once, and all other.
+struct Light {
+    double once = 0, more = 0;
+};
+
+/// Sums over places, and of squares and products.
+class Sums {
+  public:
+    void add(const Light& light) {
+        ++count_;
+        const double all = light.once + light.more;
+        all_ += all, more_ += light.more;
+        of_all_ += all * all, of_more_ += light.more * light.more, of_both_ += all * light.more;
+    }
+
+    /// The ratio of two means, and the standard error of it (Cochran 1977, eq. 2.46).
+    std::optional<LightLeftOut> share() const {
+        if (!(all_ > 0)) return std::nullopt;
+        const double ratio = more_ / all_;
+        const double squares =
+            std::max(0.0, of_more_ - 2 * ratio * of_both_ + ratio * ratio * of_all_);
+        return LightLeftOut{ratio, std::sqrt(count_ / std::max(1.0, count_ - 1) * squares) / all_};
+    }
+
+  private:
+    double count_ = 0, all_ = 0, more_ = 0, of_all_ = 0, of_more_ = 0, of_both_ = 0;
+};
 
 }  // namespace
 
 std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene) {
     if (scattering_of(scene.desc().render) == RenderDesc::Scattering::multiple) return std::nullopt;
     LightTransport transport = make_path_transport(
-        scene, std::make_shared<const ScatteringTables>(scene.water.medium, k_guiding_orders));
+        scene, std::make_shared<const ScatteringTables>(scene.water.medium, k_guides));
     const PixelRenderer pixels = pixel_renderer(scene, transport);
-    const PathTrial trial = PathPixels(pixels, 0).try_out(k_paths);
-    double more = 0, variance = 0;
-    for (const PathTrial::OfKind& kind : trial.kinds) {
-        more += kind.mean;
-        variance += kind.variance / k_paths;
+    const PathPixels paths(pixels, 0);
+    const RaySource& rays = pixels.rays();
+    const double enough = most_work(pixels);
+    Sums sums;
+    double work = 0;
+    // As the work of a path is the same in every run, so is the number of places.
+    for (std::size_t first = 0; first < k_most_places && work < enough; first += k_places_at_once) {
+        std::array<PathTrial, k_places_at_once> trials;
+        parallel_for(trials.size(), [&](std::size_t i) {
+            const auto [x, y] = even_place(first + i);
+            trials[i] = paths.try_out(x * rays.width(), y * rays.height(), first + i, 1);
+        });
+        for (const PathTrial& trial : trials) {
+            Light light{trial.once, 0};
+            work += k_vertices_of_place;
+            for (const PathTrial::OfKind& kind : trial.kinds) {
+                light.more += kind.mean;
+                work += kind.work;
+            }
+            sums.add(light);
+        }
     }
-    const double all = trial.once + more;
-    if (!(all > 0)) return std::nullopt;
-    return LightLeftOut{more / all, std::sqrt(variance) * trial.once / (all * all)};
+    return sums.share();
 }
 
 std::string settings_of_all_light(const SceneDesc& scene) {

@@ -79,7 +79,7 @@ class Renderer {
     void prepare(const RenderOptions& options = {});
 
     /// Renders the image. The film belongs to the renderer and stays as it is until the next image
-    /// is prepared, which reuses its memory. Throws InputError if there is not enough memory;
+    /// is prepared, which reuses its memory. Throws as require_memory;
     /// UsageError for a window that is not within the image, and as layer_plan.
     const Film& render(const RenderOptions& options = {});
 

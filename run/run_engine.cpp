@@ -1,5 +1,7 @@
 #include "run/run_engine.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -26,7 +28,7 @@ void RunEngine::run(const Job& job, RunClient& client, const std::string& noun) 
     warned_.clear();
     written_ = 0;
     try {
-        for (std::size_t place = 0; place < job.images.size(); ++place) render(place);
+        render_all(job);
         finish_writing();
     } catch (const Interrupted&) {
         try {
@@ -38,6 +40,29 @@ void RunEngine::run(const Job& job, RunClient& client, const std::string& noun) 
     } catch (...) {
         finish_writing();
         throw;
+    }
+}
+
+namespace {
+
+constexpr double k_patience = 60;  // s: for memory that other programs have
+
+}  // namespace
+
+// A long run outlasts moments in which there is none.
+void RunEngine::render_all(const Job& job) {
+    MemoryWait wait = MemoryWaitScope::of_this_thread();
+    if (job.images.size() > 1) {
+        wait.seconds = k_patience;
+        wait.tell = [this](const std::string& line) {
+            client_->warn(place_,
+                          fmt::format("{}; it is tried again for {:g} s", line, k_patience));
+        };
+    }
+    const MemoryWaitScope scope(wait);
+    for (std::size_t place = 0; place < job.images.size(); ++place) {
+        renew_memory_limit();
+        render(place);
     }
 }
 
@@ -76,7 +101,7 @@ void RunEngine::render(std::size_t place) {
     renderer_.set_scene(std::move(scene));
     renderer_.prepare(options);
     std::string light_note;
-    if (!std::exchange(looked_for_light_, true))
+    if (client_->reads_light_note() && !std::exchange(looked_for_light_, true))
         light_note = left_out_note(renderer_.assembled(), renderer_.light_left_out()).value_or("");
     client_->loaded(place);
     warn_of_image();

@@ -103,6 +103,8 @@ class RunClient {
 
     /// A warning that has not been given in this run; see RunEngine::warn.
     virtual void warn(std::size_t place, const std::string& line) = 0;
+    /// Whether anybody reads RenderReport::light_note, which takes a tenth of an image's time.
+    virtual bool reads_light_note() const { return false; }
     /// How far a stage of the image is (ProgressCallback); from any thread, one call at a time.
     virtual void tell(const std::string& stage, double fraction) = 0;
 };
@@ -121,8 +123,9 @@ class RunEngine {
 
     /// Renders all images of a job; `noun` is what messages call one of them. However the run ends,
     /// what was rendered is written, but for the last image of a run that is stopped. Throws what
-    /// reading, rendering, writing and the hooks throw: InputError, also for an image that does not
-    /// fit into memory; IoError, of the image before as well; Interrupted.
+    /// reading, rendering, writing and the hooks throw: InputError; OutOfMemory, by a run of
+    /// several images only if memory is lacking for a minute; IoError, of the image before as well;
+    /// Interrupted.
     void run(const Job& job, RunClient& client, const std::string& noun = "image");
 
     /// Lends the renderer, between runs, to what is no run of images; `client` is told how far its
@@ -148,6 +151,7 @@ class RunEngine {
 
   private:
     void tell(const std::string& stage, double fraction);
+    void render_all(const Job& job);
     void render(std::size_t place);
     FinishedImage finished(const WantedImage& wanted);
     void begin_writing(ImageWork work, std::size_t bytes);

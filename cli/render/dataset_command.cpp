@@ -66,7 +66,10 @@ class ViewClient : public RunClient {
     void tell(const std::string& stage, double fraction) override {
         // Nearly all the time that a view takes is this stage.
         const double share = stage == "render" ? fraction : 0;
-        progress_.update(engine_.clock().share_done(share));
+        // Computing species may take longer than all views.
+        progress_.update(
+            engine_.clock().share_done(share),
+            stage == "particles" ? fmt::format("particles: {:.0f} %", 100 * fraction) : "");
     }
 
   protected:

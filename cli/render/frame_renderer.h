@@ -35,6 +35,7 @@ class FrameRenderer : public RunClient {
     /// last one of a run that was stopped.
     void run(JobScenes& scenes);
 
+    bool reads_light_note() const override { return !arguments_.quiet; }
     WantedImage want(std::size_t place, ImageScene& scene) override;
     void loaded(std::size_t place) override;
     ImageWork take(std::size_t place, FinishedImage image) override;

@@ -6,10 +6,16 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <fstream>
 #include <limits>
+#include <mutex>
 #include <sstream>
 #include <string>
+#include <thread>
+#include <utility>
+
+#include "core/base/error.h"
 
 namespace uw {
 
@@ -35,11 +41,23 @@ std::uint64_t bytes_of(std::string_view key, const fs::path& file) {
     return k_unknown;
 }
 
-std::uint64_t available_on_the_machine(const fs::path& root) {
+/// What there is, and what of it is free.
+struct Share {
+    std::uint64_t all = k_unknown, left = k_unknown;
+
+    void limit_to(const Share& other) {
+        all = std::min(all, other.all);
+        left = std::min(left, other.left);
+    }
+};
+
+Share of_the_machine(const fs::path& root) {
     const fs::path file = root / "proc/meminfo";
-    const std::uint64_t available = bytes_of("MemAvailable:", file);
-    const std::uint64_t swap = bytes_of("SwapFree:", file);
-    return available == k_unknown || swap == k_unknown ? available : available + swap;
+    const auto with_swap = [&](std::string_view memory, std::string_view swap) {
+        const std::uint64_t bytes = bytes_of(memory, file), more = bytes_of(swap, file);
+        return bytes == k_unknown || more == k_unknown ? bytes : bytes + more;
+    };
+    return {with_swap("MemTotal:", "SwapTotal:"), with_swap("MemAvailable:", "SwapFree:")};
 }
 
 /// The number in a file; `k_unknown` if there is none, as where it says "max".
@@ -58,23 +76,23 @@ constexpr GroupFiles k_version_1{
     "memory.limit_in_bytes", "memory.usage_in_bytes", {"total_inactive_file", "total_active_file"}};
 constexpr GroupFiles k_version_2{"memory.max", "memory.current", {"inactive_file", "active_file"}};
 
-std::uint64_t left_in_group(const fs::path& group, const GroupFiles& files) {
+Share of_group(const fs::path& group, const GroupFiles& files) {
     const std::uint64_t limit = number_in(group / files.limit);
-    if (limit == k_unknown) return k_unknown;
+    if (limit == k_unknown) return {};
     const std::uint64_t used = number_in(group / files.usage);
     std::uint64_t cached = 0, value = 0;
     std::ifstream statistics(group / "memory.stat");
     for (std::string key; statistics >> key >> value;)
         if (std::ranges::find(files.cached, key) != files.cached.end()) cached += value;
-    return less(limit, less(used == k_unknown ? 0 : used, cached));
+    return {limit, less(limit, less(used == k_unknown ? 0 : used, cached))};
 }
 
 /// What its control groups leave the process: the one that /proc/self/cgroup names and those above
 /// it, or, as inside a container, what is mounted of them.
-std::uint64_t left_in_groups(const fs::path& root) {
+Share of_groups(const fs::path& root) {
     const fs::path mounted = root / "sys/fs/cgroup";
-    std::uint64_t left = std::min(left_in_group(mounted, k_version_2),
-                                  left_in_group(mounted / "memory", k_version_1));
+    Share share = of_group(mounted, k_version_2);
+    share.limit_to(of_group(mounted / "memory", k_version_1));
     std::ifstream in(root / "proc/self/cgroup");
     for (std::string line; std::getline(in, line);) {
         // "0::/user.slice" of version 2, "6:memory:/user.slice" of version 1.
@@ -85,11 +103,10 @@ std::uint64_t left_in_groups(const fs::path& root) {
         if (!is_second && ("," + controllers + ",").find(",memory,") == std::string::npos) continue;
         fs::path name = fs::path(line.substr(second + 1)).relative_path();
         for (; !name.empty(); name = name.parent_path())
-            left =
-                std::min(left, is_second ? left_in_group(mounted / name, k_version_2)
-                                         : left_in_group(mounted / "memory" / name, k_version_1));
+            share.limit_to(is_second ? of_group(mounted / name, k_version_2)
+                                     : of_group(mounted / "memory" / name, k_version_1));
     }
-    return left;
+    return share;
 }
 
 std::uint64_t left_of_address_space(const fs::path& root) {
@@ -113,20 +130,129 @@ std::uint64_t data_bytes(const fs::path& root) {
     return data == k_unknown ? 0 : data;
 }
 
-std::uint64_t available_memory_bytes(const fs::path& root) {
-    return std::min({available_on_the_machine(root), left_in_groups(root),
-                     left_of_address_space(root), left_of_data(root)});
+FreeMemory read_free_memory(const fs::path& root) {
+    Share shared = of_the_machine(root);
+    shared.limit_to(of_groups(root));
+    return {shared.left, std::min(left_of_address_space(root), left_of_data(root)), shared.all};
 }
 
-InputError lack_of_memory(double bytes, std::string_view what, std::string_view mend) {
-    return InputError(fmt::format("{} {:.3g} GB of memory, but only {:.3g} GB are free; {}", what,
-                                  bytes * 1e-9,
-                                  static_cast<double>(available_memory_bytes()) * 1e-9, mend));
+std::uint64_t available_memory_bytes(const fs::path& root) {
+    return read_free_memory(root).available();
+}
+
+namespace {
+
+thread_local const MemoryWait* wait_of_thread = nullptr;
+
+void sleep_unless_stopped(double seconds) {
+    throw_if_stopped();
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+    throw_if_stopped();
+}
+
+}  // namespace
+
+MemoryWaitScope::MemoryWaitScope(const MemoryWait& wait)
+    : previous_(std::exchange(wait_of_thread, &wait)) {}
+
+MemoryWaitScope::~MemoryWaitScope() {
+    wait_of_thread = previous_;
+}
+
+const MemoryWait& MemoryWaitScope::of_this_thread() {
+    static const MemoryWait by_itself;
+    return wait_of_thread != nullptr ? *wait_of_thread : by_itself;
 }
 
 void require_memory(double bytes, std::string_view what, std::string_view mend) {
-    if (bytes > static_cast<double>(available_memory_bytes()))
-        throw lack_of_memory(bytes, what, mend);
+    const MemoryWait& wait = MemoryWaitScope::of_this_thread();
+    const auto is_less = [&](std::uint64_t there) { return static_cast<double>(there) < bytes; };
+    FreeMemory free = wait.read();
+    if (!is_less(free.available())) return;
+    // Our own limit may be that of a moment of shortage.
+    renew_memory_limit();
+    free = wait.read();
+    // The first pauses are shorter than what anyone would notice.
+    constexpr double k_first_pause = 0.01, k_longest_pause = 0.25, k_silent = 1;
+    double waited = 0, pause = k_first_pause;
+    bool has_told = false;
+    for (; is_less(free.available()); free = wait.read()) {
+        const std::string line =
+            fmt::format("{} {:.3g} GB of memory, but only {:.3g} GB are free; {}", what,
+                        bytes * 1e-9, static_cast<double>(free.available()) * 1e-9, mend);
+        if (is_less(free.most)) throw InputError(line);
+        if (is_less(free.own) || !(waited < wait.seconds)) throw OutOfMemory(line);
+        if (wait.tell && waited >= k_silent && !std::exchange(has_told, true)) wait.tell(line);
+        (wait.sleep ? wait.sleep : sleep_unless_stopped)(pause);
+        waited += pause;
+        pause = std::min(2 * pause, k_longest_pause);
+    }
+}
+
+namespace {
+
+// What the kernel needs for the process beside its data: page tables, files that are being written.
+constexpr double k_share_of_kernel = 1.0 / 16;
+
+/// The limit of data that this process has set itself.
+struct DataLimit {
+    std::mutex mutex;
+    bool is_set = false;
+    int lifted = 0;  // so many MemoryLimitLifted live
+    rlim_t before = RLIM_INFINITY, ours = RLIM_INFINITY;
+
+    static rlimit current() {
+        rlimit limit{RLIM_INFINITY, RLIM_INFINITY};
+        ::getrlimit(RLIMIT_DATA, &limit);
+        return limit;
+    }
+    static void set(rlim_t bytes) {
+        rlimit limit = current();
+        limit.rlim_cur = bytes;
+        ::setrlimit(RLIMIT_DATA, &limit);
+    }
+    void renew() {
+        const FreeMemory free = read_free_memory();
+        const std::uint64_t left = std::min(free.shared, left_of_address_space("/"));
+        const double most =
+            static_cast<double>(data_bytes()) + (1 - k_share_of_kernel) * static_cast<double>(left);
+        // More than that is no limit.
+        constexpr double k_largest = 0x1p62;
+        ours = most < k_largest ? std::min(before, static_cast<rlim_t>(most)) : before;
+        if (lifted == 0) set(ours);
+    }
+};
+
+DataLimit& data_limit() {
+    static DataLimit limit;
+    return limit;
+}
+
+}  // namespace
+
+void limit_memory() {
+    DataLimit& limit = data_limit();
+    const std::lock_guard lock(limit.mutex);
+    if (!std::exchange(limit.is_set, true)) limit.before = DataLimit::current().rlim_cur;
+    limit.renew();
+}
+
+void renew_memory_limit() {
+    DataLimit& limit = data_limit();
+    const std::lock_guard lock(limit.mutex);
+    if (limit.is_set) limit.renew();
+}
+
+MemoryLimitLifted::MemoryLimitLifted() {
+    DataLimit& limit = data_limit();
+    const std::lock_guard lock(limit.mutex);
+    if (limit.lifted++ == 0 && limit.is_set) DataLimit::set(limit.before);
+}
+
+MemoryLimitLifted::~MemoryLimitLifted() {
+    DataLimit& limit = data_limit();
+    const std::lock_guard lock(limit.mutex);
+    if (--limit.lifted == 0 && limit.is_set) DataLimit::set(limit.ours);
 }
 
 }  // namespace uw

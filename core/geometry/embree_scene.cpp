@@ -327,9 +327,9 @@ void EmbreeScene::check(const char* doing) const {
     const RTCError error = rtcGetDeviceError(device_.get());
     if (error == RTC_ERROR_NONE) return;
     if (error == RTC_ERROR_CANCELLED) throw Interrupted();
-    const std::string reason =
-        error == RTC_ERROR_OUT_OF_MEMORY ? "out of memory" : "error " + std::to_string(error);
-    throw std::runtime_error(std::string("Embree failed while ") + doing + ": " + reason);
+    if (error == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw std::runtime_error(std::string("Embree failed while ") + doing + ": error " +
+                             std::to_string(error));
 }
 
 void EmbreeScene::commit(RTCScene scene) const {

@@ -52,6 +52,11 @@ class EmbreeSurfaces final : public Surfaces, public TexturedSurfaces {
 
     bool has_textures() const override { return has_textures_; }
 
+    bool is_textured(const SurfaceHit& hit) const override {
+        return hit.geometry < objects_.placed_count() &&
+               is_textured_mesh(objects_.placed(hit.geometry), hit.triangle);
+    }
+
     void filter_textures(const SurfaceSpread& spread, SurfaceHit& hit) const override {
         if (hit.geometry < objects_.placed_count())
             filter_mesh(objects_.placed(hit.geometry), objects_.bands, spread, hit);

@@ -370,6 +370,14 @@ void shade_mesh(const PlacedMesh& mesh, std::uint32_t triangle, const TriangleCr
     hit.material_id = number == 0 ? 0 : object.materials_end + number;
 }
 
+bool is_textured_mesh(const PlacedMesh& mesh, std::uint32_t triangle) {
+    if (!mesh.object.has_textures) return false;
+    const auto& shape = mesh.object.mesh;
+    const MeshMaterial& material =
+        shape.materials[shape.triangle_materials.empty() ? 0 : shape.triangle_materials[triangle]];
+    return material.base_map || material.normal_map || material.metallic_roughness_map;
+}
+
 void filter_mesh(const PlacedMesh& mesh, const ReflectanceBands& bands, const SurfaceSpread& spread,
                  SurfaceHit& hit) {
     if (!mesh.object.has_textures) return;

@@ -15,6 +15,9 @@ class TexturedSurfaces {
     virtual ~TexturedSurfaces() = default;
 
     virtual bool has_textures() const = 0;
+    /// Whether a hit of these surfaces is where one of them has a texture that shows in its
+    /// reflectance or its normal.
+    virtual bool is_textured(const SurfaceHit& hit) const = 0;
     /// Replaces what textures give to a hit of these surfaces, its reflectance and shading normal,
     /// by their means over `spread`. Where that covers less than a texel nothing changes, and
     /// neither does what Surfaces::material says.

@@ -678,6 +678,22 @@ class ImageHeights : public WaterWaves::Shape {
 
 }  // namespace
 
+namespace {
+
+// A ray comes near a surface in steps that are the shorter the steeper it may be: some twenty times
+// as many as this, at most. Water breaks at a slope of 0.6.
+constexpr double k_steepest = 30;
+
+const char* mend_of_slopes(const WavesDesc& desc) {
+    if (std::holds_alternative<HeightImageDesc>(desc.shape))
+        return "give the image a greater width, or lower heights in metres";
+    if (std::holds_alternative<WaveSpectrumDesc>(desc.shape))
+        return "give a longer fetch, less wind or a lower resolution";
+    return "lower the amplitudes, or give longer waves";
+}
+
+}  // namespace
+
 WaterWaves::WaterWaves(const WavesDesc& desc, double time) {
     shape_ = std::visit(
         [&](const auto& shape) -> std::shared_ptr<const Shape> {
@@ -690,6 +706,10 @@ WaterWaves::WaterWaves(const WavesDesc& desc, double time) {
                 return std::make_shared<SineWaves>(shape, desc.depth, time);
         },
         desc.shape);
+    if (!(steepest() <= k_steepest))
+        throw InputError(
+            fmt::format("{}: its slopes are up to {:.3g}, and must not be above {}; {}", desc.where,
+                        steepest(), k_steepest, mend_of_slopes(desc)));
 }
 
 WavePoint WaterWaves::at(double u, double v) const {

@@ -92,8 +92,8 @@ struct WaveStatistics {
 /// several threads; the same for any number of them.
 class WaterWaves {
   public:
-    /// `time` [s]. Throws InputError for an image that is not one of floating-point numbers, and
-    /// for one with a height that is not finite; IoError if it cannot be read.
+    /// `time` [s]. Throws InputError for an image that is not one of floating-point numbers, for
+    /// one with a height that is not finite, and for slopes above 30; IoError if it cannot be read.
     WaterWaves(const WavesDesc& desc, double time);
 
     WavePoint at(double u, double v) const;

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <new>
-#include <stdexcept>
 #include <utility>
 
 #include "core/base/available_memory.h"
@@ -27,21 +25,12 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
     const double bytes = k_with_writing * 4.0 * window.width() * window.height() *
                              static_cast<double>(channel_names_.size()) +
                          k_least_besides;
-    const auto no_memory = [&] {
-        return lack_of_memory(bytes,
-                              fmt::format("camera.resolution: {} x {} pixels of {} channels need",
-                                          window_.width(), window_.height(), channel_names_.size()),
-                              "ask for fewer --layers, a --crop or a smaller --size");
-    };
-    if (bytes > static_cast<double>(available_memory_bytes())) throw no_memory();
-    try {
-        values_.assign(window.width() * static_cast<int>(channel_names_.size()), window.height());
-        shows_lamp_.assign(window.width(), window.height());
-    } catch (const std::bad_alloc&) {
-        throw no_memory();
-    } catch (const std::length_error&) {
-        throw no_memory();
-    }
+    require_memory(bytes,
+                   fmt::format("camera.resolution: {} x {} pixels of {} channels need",
+                               window.width(), window.height(), channel_names_.size()),
+                   "ask for fewer --layers, a --crop or a smaller --size");
+    values_.assign(window.width() * static_cast<int>(channel_names_.size()), window.height());
+    shows_lamp_.assign(window.width(), window.height());
 }
 
 Film cropped(const Film& film, const PixelWindow& window) {

@@ -34,7 +34,7 @@ enum FilmChannel : std::size_t { k_red = 0, k_green = 1, k_blue = 2, k_alpha = 3
 class Film {
   public:
     /// `channel_names` begins with R, G, B, A. Throws UsageError if the window is empty or extends
-    /// beyond the image, InputError if there is not enough memory.
+    /// beyond the image, and as require_memory.
     Film(int width, int height, const PixelWindow& window, std::vector<std::string> channel_names);
 
     int width() const { return width_; }

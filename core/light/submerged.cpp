@@ -141,6 +141,10 @@ void SubmergedSurfaces::occluded_many(std::span<const Point3> from, std::span<co
         below_->occluded_many(from, to, blocked);
 }
 
+bool SubmergedSurfaces::is_textured(const SurfaceHit& hit) const {
+    return !hit.is_water_surface && textures_->is_textured(hit);
+}
+
 void SubmergedSurfaces::filter_textures(const SurfaceSpread& spread, SurfaceHit& hit) const {
     if (!hit.is_water_surface) textures_->filter_textures(spread, hit);
 }

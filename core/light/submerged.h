@@ -56,6 +56,7 @@ class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
     std::uint64_t triangle_count() const override { return below_->triangle_count(); }
     bool empty() const override { return false; }
     bool has_textures() const override { return textures_ != nullptr; }
+    bool is_textured(const SurfaceHit& hit) const override;
     void filter_textures(const SurfaceSpread& spread, SurfaceHit& hit) const override;
     void add_to_texture(const SurfaceHit& hit, std::span<const double> by_reflectance,
                         TextureGradient& gradient) const override;

@@ -278,13 +278,14 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
         find_nodes(ray, j, begin, distances, w);
         w.radiance.assign(distances.size(), Spectrum{});
         sum_.add(w.nodes, emitters[j].axis_intensity(), w.radiance);
-        if (lamp != emitters[j].index()) {
+        if (scene_.lamp_surfaces && lamp != emitters[j].index()) {
             lamp = emitters[j].index();
             evenness_.find(*lamp, ray, begin, distances, w.evenness);
         }
         Spectrum so_far;
         for (std::size_t i = 0; i < distances.size(); ++i) {
-            so_far += w.evenness[i] * w.radiance[i];
+            if (scene_.lamp_surfaces) w.radiance[i] *= w.evenness[i];
+            so_far += w.radiance[i];
             result.at(i, emitters[j].index()) += so_far;
         }
     }

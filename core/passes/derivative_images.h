@@ -17,7 +17,7 @@ namespace uw {
 
 /// The derivatives of an image by numbers of its scene, [change][pixel of the window][band]: light
 /// as the image's `total` holds it, per unit of the number. Pixels do not depend on the window, nor
-/// results on the number of threads. Throws InputError if there is not enough memory, and
+/// results on the number of threads. Throws as require_memory, and
 /// Interrupted.
 ///
 /// The derivatives of light that was scattered or reflected once are the image's own sums over its

@@ -1,6 +1,7 @@
 #include "core/passes/mirrored_blur.h"
 
 #include <fftw3.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/base/fourier.h"
 #include "core/base/parallel.h"
@@ -275,14 +277,12 @@ MirroredBlur::MirroredBlur(int width, int height, double spacing)
       along_columns_(grid_.rows()),
       response_x_(responses(grid_.x())),
       response_y_(responses(grid_.y())) {
-    try {
-        image_.assign(grid_.columns(), height);
-        spectrum_.assign(grid_.rows(), grid_.columns());
-    } catch (const std::bad_alloc&) {
-        throw InputError(
-            "forward scatter: not enough memory for an image of this size; render a "
-            "smaller one, or set water.forward_scatter.K to 0");
-    }
+    const double bytes =
+        1.0 * sizeof(double) * grid_.columns() * (static_cast<double>(height) + grid_.rows());
+    require_memory(bytes, fmt::format("water.forward_scatter: {} x {} pixels need", width, height),
+                   "render a smaller --size, or set K to 0");
+    image_.assign(grid_.columns(), height);
+    spectrum_.assign(grid_.rows(), grid_.columns());
 }
 
 void MirroredBlur::add(const RowSource& image, const BlurKernel& kernel) {

@@ -100,7 +100,7 @@ class CosineTransform {
 class MirroredBlur {
   public:
     /// Images of `width` times `height` pixels, blurred by way of nodes about `spacing` >= 1 pixels
-    /// apart. Throws InputError if there is not enough memory.
+    /// apart. Throws as require_memory.
     MirroredBlur(int width, int height, double spacing = 1);
 
     const SplineGrid& grid() const { return grid_; }

@@ -133,7 +133,7 @@ class Pass {
     /// Adds its step to the rendering, if it takes part in each pixel. All passes begin before the
     /// first is run.
     virtual void begin(Rendering& rendering);
-    /// Does its work. Throws Interrupted, and InputError if there is not enough memory.
+    /// Does its work. Throws Interrupted, and as require_memory.
     virtual void run(Rendering& rendering) = 0;
     /// Sums up what its step has seen of the pixels, after the last pass was run.
     virtual void end(Rendering& rendering);

@@ -47,6 +47,8 @@ class PathPixels {
 
     /// Tries `paths` of each kind at a few places all over the image.
     PathTrial try_out(int paths) const;
+    /// The same at the image position (x, y) alone; another `place` has other random numbers.
+    PathTrial try_out(double x, double y, std::uint64_t place, int paths) const;
     /// By such a trial, shares out the time of the paths that follow among the kinds as leaves the
     /// least error. `samples`: paths per pixel, about.
     void share_out(int samples);
@@ -64,7 +66,6 @@ class PathPixels {
 
     void begin(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
                std::size_t in_light, CameraSegment& segment, Sum& sum) const;
-    PathTrial try_out(double x, double y, std::uint64_t place, int paths) const;
     void render_the_rest(int x, int y, const PathRound& round, PixelView& view,
                          PixelResult& result) const;
     void trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,

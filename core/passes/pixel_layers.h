@@ -128,7 +128,7 @@ class ExposureMean {
     enum class Errors { independent, alike };
 
     /// Adds to `mean`, whose values are 0; it outlives this object, as do `plan` and `colour`.
-    /// Throws InputError if there is not enough memory.
+    /// Throws as require_memory.
     ExposureMean(const LayerPlan& plan, const BandColour& colour, Errors errors, Film& mean);
 
     /// Includes the image of a part: with the same channels, and of the window all rows that have

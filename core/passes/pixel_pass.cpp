@@ -38,7 +38,8 @@ class TileRenderer {
     const PixelResult& render(int x, int y);
 
   private:
-    void find_in_scatter(std::size_t pixel);
+    /// Of a pixel of the tile, until the next is asked for.
+    std::span<const double> in_scatter(std::size_t pixel);
 
     const PixelRenderer& renderer_;
     std::span<const PixelStep> steps_;
@@ -74,13 +75,15 @@ void TileRenderer::begin(const PixelWindow& tile) {
     beside_.assign(renderer_.in_scatter().band_count(), 0.0);
     for (InScatterLattice& lattice : lattices_) {
         lattice.evaluate(tile, views_, beside_);
+        if (&lattice == &lattices_.back()) break;
         least_.resize(beside_.size());
         lattice.find_least(least_);
         add(beside_, least_);
     }
 }
 
-void TileRenderer::find_in_scatter(std::size_t pixel) {
+std::span<const double> TileRenderer::in_scatter(std::size_t pixel) {
+    if (lattices_.size() == 1) return lattices_.front().values(pixel);
     if (lattices_.empty()) renderer_.in_scatter().integrate(views_[pixel], in_scatter_);
     for (std::size_t i = 0; i < lattices_.size(); ++i) {
         const std::span<const double> part = lattices_[i].values(pixel);
@@ -89,14 +92,14 @@ void TileRenderer::find_in_scatter(std::size_t pixel) {
         else
             add(in_scatter_, part);
     }
+    return in_scatter_;
 }
 
 const PixelResult& TileRenderer::render(int x, int y) {
     const std::size_t pixel = views_.index(x - tile_.x0, y - tile_.y0);
     const PixelView& view = views_[pixel];
     const std::size_t first_sample = first_samples_[pixel];
-    find_in_scatter(pixel);
-    renderer_.shade(view, light_, first_sample, in_scatter_, result_);
+    renderer_.shade(view, light_, first_sample, in_scatter(pixel), result_);
     for (const PixelStep& step : steps_) step({x, y, view, light_, first_sample, result_});
     renderer_.weigh(x, y, result_);
     return result_;

@@ -144,6 +144,7 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
       in_scatter_(*transport.integrator, rays.world_from_camera(), slabs, lamp_count(),
                   band_count(), parts),
       lamps_in_view_(scene),
+      textures_(textures_of(*scene.surfaces)),
       matchers_(matchers),
       object_mattes_(matte_ids(scene.surfaces->names().objects)),
       material_mattes_(matte_ids(scene.surfaces->names().materials)),
@@ -205,15 +206,14 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
 
 namespace {
 
-/// What of a surface one of the `count` samples of a pixel stands for.
+/// What of a surface one of the `count` samples of a pixel stands for. `textures`: null: none.
 class SampleSpread {
   public:
-    SampleSpread(const RaySource& rays, const Surfaces& surfaces, const PixelView& view, int count)
-        : textures_(view.ray ? textures_of(surfaces) : nullptr) {
+    SampleSpread(const RaySource& rays, const TexturedSurfaces* textures, const PixelView& view,
+                 int count)
+        : rays_(rays), textures_(view.ray ? textures : nullptr), x_(view.x), y_(view.y) {
         if (textures_ == nullptr) return;
         center_ = *view.ray;
-        right_ = rays.refracted_ray(view.x + 1, view.y);
-        below_ = rays.refracted_ray(view.x, view.y + 1);
         // Samples lie less evenly than squares of their share would.
         constexpr double k_overlap = 1.5;
         if (count > 1) share_ = std::min(1.0, k_overlap / std::sqrt(static_cast<double>(count)));
@@ -221,8 +221,12 @@ class SampleSpread {
 
     /// Takes the textures of a hit over it. The pixel's own ray passes near that of each sample,
     /// through whatever point of the aperture.
-    void filter_textures(SurfaceHit& hit) const {
-        if (textures_ == nullptr) return;
+    void filter_textures(SurfaceHit& hit) {
+        if (textures_ == nullptr || !textures_->is_textured(hit)) return;
+        if (!std::exchange(has_beside_, true)) {
+            right_ = rays_.refracted_ray(x_ + 1, y_);
+            below_ = rays_.refracted_ray(x_, y_ + 1);
+        }
         textures_->filter_textures({step_on(hit, right_), step_on(hit, below_)}, hit);
     }
 
@@ -241,9 +245,12 @@ class SampleSpread {
         return here && there ? share_ * (*there - *here) : Vector3(0.0);
     }
 
-    const TexturedSurfaces* textures_;  // null: there are none
+    const RaySource& rays_;
+    const TexturedSurfaces* textures_;
+    double x_, y_;  // of the pixel's ray
     Ray center_;
-    std::optional<Ray> right_, below_;
+    bool has_beside_ = false;           // whether these are known:
+    std::optional<Ray> right_, below_;  // a pixel further on
     double share_ = 1;
 };
 
@@ -257,7 +264,7 @@ void PixelRenderer::add_center(PixelView& view) const {
     view.weights.push_back(1);
     if (view.has_hit) {
         view.samples.push_back({*view.ray, view.hit, view.x, view.y});
-        SampleSpread(rays_, *scene_.surfaces, view, 1).filter_textures(view.samples.back().hit);
+        SampleSpread(rays_, textures_, view, 1).filter_textures(view.samples.back().hit);
     }
     lamps_in_view_.append(*view.ray, view.distances.back(), view.lamps);
 }
@@ -273,7 +280,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
     const bool has_aperture = rays_.has_aperture();
     const bool differ = has_aperture || rays_.moves();
     const PixelSampling sampling(samples_, x, y);
-    const SampleSpread spread(rays_, *scene_.surfaces, view, std::max(count, samples_.total));
+    SampleSpread spread(rays_, textures_, view, std::max(count, samples_.total));
     for (int i = 0; i < count; ++i) {
         throw_if_stopped();
         const ImageOffset offset = sampling.offset(i);

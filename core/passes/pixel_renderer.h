@@ -20,6 +20,8 @@
 
 namespace uw {
 
+class TexturedSurfaces;
+
 /// The point of the aperture that belongs to a point of the unit square, evenly, by squares that
 /// become rings (Shirley and Chiu 1997): neighbours stay neighbours.
 inline AperturePoint aperture_point(double a, double b) {
@@ -153,6 +155,7 @@ class PixelRenderer {
     RayInScatter in_scatter_;
     std::vector<RayInScatter> parts_;  // of LightTransport::parts
     LampsInView lamps_in_view_;
+    const TexturedSurfaces* textures_;  // null: no surface has any
     PointMatchers matchers_;
     PixelWeight weight_;                                  // null: 1
     std::vector<float> object_mattes_, material_mattes_;  // by SurfaceHit's ids

@@ -10,8 +10,6 @@
 
 namespace uw {
 
-namespace {
-
 /// Nodes at the same number of places in each octave.
 class OctaveNodes {
   public:
@@ -50,7 +48,10 @@ class OctaveNodes {
     double per_cell_;
 };
 
+namespace {
+
 constexpr OctaveNodes k_radii(0x1p-8, 48, 3), k_angles(0x1p-10, 0x1p10, 2);
+constexpr OctaveNodes k_coarse_radii(0x1p-8, 48, 2), k_coarse_angles(0x1p-10, 0x1p10, 1);
 // Every so many radii have a lobe of their own.
 constexpr std::size_t k_lobe_stride = 2;
 
@@ -62,8 +63,9 @@ double sine_of(double h) {
     return 2 * h / (1 + h * h);
 }
 
-double half_tangent_of(double psi) {
-    return std::tan(0.5 * psi);
+// tan(psi / 2) by the two sides of psi's triangle and its hypotenuse, without cancellation.
+double half_tangent_of(double opposite, double adjacent, double hypotenuse) {
+    return adjacent > 0 ? opposite / (hypotenuse + adjacent) : (hypotenuse - adjacent) / opposite;
 }
 
 }  // namespace
@@ -72,12 +74,17 @@ double half_tangent_of(double psi) {
 /// away: [radius * angles + angle].
 class LampField::Solver {
   public:
-    Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line);
+    Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line, bool is_coarse);
 
     const std::vector<double>& order() const { return order_; }
     /// The mean of the last order but one over the phase function.
     const std::vector<double>& source() const { return source_; }
     void find_next_order();
+
+    std::size_t size() const { return order_.size(); }
+    double radius_of(std::size_t node) const { return radii_[node / nh_]; }
+    /// Such values at the nodes of the field, k_radii and k_angles.
+    std::vector<double> at_nodes_of_field(const std::vector<double>& values) const;
 
   private:
     /// What one step along a ray adds: an even source between its ends, from four nodes.
@@ -88,21 +95,54 @@ class LampField::Solver {
 
     void make_matrix(const HalfTangentDensity& direction);
     double first_order(const HalfTangentDensity& line, double radius, double angle) const;
-    static void march(double radius, double h, std::vector<Step>& steps);
+    void march(double radius, double h, std::vector<Step>& steps) const;
 
-    std::size_t nr_ = k_radii.count(), nh_ = k_angles.count();
+    bool is_coarse_;
+    OctaveNodes radii_, angles_;
+    std::size_t nr_, nh_;                   // their numbers
+    std::vector<double> growth_of_radius_;  // by which the decay of the source is taken out
     std::vector<double> matrix_;            // of a scattering: [from * angles + to]
     std::vector<std::vector<Step>> steps_;  // of each node
     std::vector<double> order_, source_;
 };
 
-LampField::Solver::Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line)
-    : steps_(nr_ * nh_), order_(nr_ * nh_), source_(nr_ * nh_) {
+namespace {
+
+constexpr double k_decay = 0.15;  // of the source, with the distance from the lamp, roughly
+
+}  // namespace
+
+LampField::Solver::Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line,
+                          bool is_coarse)
+    : is_coarse_(is_coarse),
+      radii_(is_coarse ? k_coarse_radii : k_radii),
+      angles_(is_coarse ? k_coarse_angles : k_angles),
+      nr_(radii_.count()),
+      nh_(angles_.count()),
+      steps_(nr_ * nh_),
+      order_(nr_ * nh_),
+      source_(nr_ * nh_) {
+    for (std::size_t i = 0; i < nr_; ++i)
+        growth_of_radius_.push_back(std::exp(k_decay * radii_[i]));
     make_matrix(direction);
     parallel_for(steps_.size(), [&](std::size_t n) {
-        order_[n] = first_order(line, k_radii[n / nh_], k_angles[n % nh_]);
-        march(k_radii[n / nh_], k_angles[n % nh_], steps_[n]);
+        order_[n] = first_order(line, radii_[n / nh_], angles_[n % nh_]);
+        march(radii_[n / nh_], angles_[n % nh_], steps_[n]);
     });
+}
+
+std::vector<double> LampField::Solver::at_nodes_of_field(const std::vector<double>& values) const {
+    if (!is_coarse_) return values;
+    std::vector<double> finer;
+    for (std::size_t i = 0; i < k_radii.count(); ++i)
+        for (std::size_t j = 0; j < k_angles.count(); ++j) {
+            const OctaveNodes::At r = radii_.at(k_radii[i]), a = angles_.at(k_angles[j]);
+            const double* near = &values[r.index * nh_ + a.index];
+            const double* far = near + nh_;
+            finer.push_back((1 - r.t) * ((1 - a.t) * near[0] + a.t * near[1]) +
+                            r.t * ((1 - a.t) * far[0] + a.t * far[1]));
+        }
+    return finer;
 }
 
 // Between the nodes of the angle a parabola goes through three: a straight line would spread the
@@ -115,7 +155,7 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
     matrix_.resize(nh_ * nh_);
     parallel_for(nh_, [&](std::size_t i) {
         std::vector<double> row(nh_, 0.0);
-        const double psi = 2 * std::atan(k_angles[i]);
+        const double psi = 2 * std::atan(angles_[i]);
         for (int a = 0; a < k_polar; ++a) {
             const double beyond = 1 - (a + 0.5) / k_polar, share = 2 * beyond / k_polar;
             const double theta =
@@ -128,14 +168,14 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
                     std::hypot(std::sin(psi) * std::cos(theta) -
                                    std::cos(psi) * std::sin(theta) * std::cos(phi),
                                std::sin(theta) * std::sin(phi));
-                const double h = std::clamp(along > -1 ? across / (1 + along) : k_angles.back(),
-                                            k_angles.front(), k_angles.back());
+                const double h = std::clamp(along > -1 ? across / (1 + along) : angles_.back(),
+                                            angles_.front(), angles_.back());
                 const double sine =
-                    std::max({across, k_least_sine * std::sin(theta), sine_of(k_angles.front())});
-                const OctaveNodes::At at = k_angles.at(h);
+                    std::max({across, k_least_sine * std::sin(theta), sine_of(angles_.front())});
+                const OctaveNodes::At at = angles_.at(h);
                 const std::size_t m =
                     std::clamp(at.index + (at.t > 0.5 ? 1 : 0), std::size_t{1}, nh_ - 2);
-                const double h0 = k_angles[m - 1], h1 = k_angles[m], h2 = k_angles[m + 1];
+                const double h0 = angles_[m - 1], h1 = angles_[m], h2 = angles_[m + 1];
                 const double weight = share / (sine * k_azimuths);
                 row[m - 1] += weight * (h - h1) * (h - h2) / ((h0 - h1) * (h0 - h2));
                 row[m] += weight * (h - h0) * (h - h2) / ((h1 - h0) * (h1 - h2));
@@ -164,29 +204,33 @@ double LampField::Solver::first_order(const HalfTangentDensity& line, double rad
 }
 
 // Between the nodes of the radius the source is linear once it is freed of most of its decay.
-void LampField::Solver::march(double radius, double h, std::vector<Step>& steps) {
-    constexpr double k_reach = 20, k_least_step = 0.002, k_most_step = 0.4, k_growth = 0.3;
-    constexpr double k_decay = 0.15;
+void LampField::Solver::march(double radius, double h, std::vector<Step>& steps) const {
+    constexpr double k_reach = 20;
+    const double least_step = is_coarse_ ? 0.004 : 0.002, most_step = is_coarse_ ? 0.8 : 0.4;
+    const double growth = is_coarse_ ? 0.6 : 0.3;
+    const auto to_lamp_at = [](double across, double along) {
+        return std::sqrt(across * across + along * along);
+    };
     const double distance = radius * sine_of(h), foot = radius * std::cos(2 * std::atan(h));
-    double s = 0;
+    double s = 0, transmittance = 1;
     while (s < k_reach) {
-        double step =
-            std::clamp(k_growth * std::hypot(distance, s - foot), k_least_step, k_most_step);
-        if (s < foot && s + step > foot) step = std::max(foot - s, k_least_step);
+        double step = std::clamp(growth * to_lamp_at(distance, s - foot), least_step, most_step);
+        if (s < foot && s + step > foot) step = std::max(foot - s, least_step);
         const double middle = s + 0.5 * step;
-        const double to_lamp = std::hypot(distance, middle - foot);
-        if (to_lamp < k_radii.back()) {
-            const OctaveNodes::At r = k_radii.at(to_lamp);
-            const OctaveNodes::At a =
-                k_angles.at(half_tangent_of(std::atan2(distance, foot - middle)));
-            const double source = std::exp(-s - k_decay * to_lamp) * -std::expm1(-step) /
-                                  std::max(to_lamp, k_radii.front());
-            const double near = source * (1 - r.t) * std::exp(k_decay * k_radii[r.index]);
-            const double far = source * r.t * std::exp(k_decay * k_radii[r.index + 1]);
-            steps.push_back({r.index * k_angles.count() + a.index,
+        const double to_lamp = to_lamp_at(distance, middle - foot);
+        const double lost = -std::expm1(-step);
+        if (to_lamp < radii_.back()) {
+            const OctaveNodes::At r = radii_.at(to_lamp);
+            const OctaveNodes::At a = angles_.at(half_tangent_of(distance, foot - middle, to_lamp));
+            const double source = transmittance * std::exp(-k_decay * to_lamp) * lost /
+                                  std::max(to_lamp, radii_.front());
+            const double near = source * (1 - r.t) * growth_of_radius_[r.index];
+            const double far = source * r.t * growth_of_radius_[r.index + 1];
+            steps.push_back({r.index * nh_ + a.index,
                              {static_cast<float>(near * (1 - a.t)), static_cast<float>(near * a.t),
                               static_cast<float>(far * (1 - a.t)), static_cast<float>(far * a.t)}});
         }
+        transmittance *= 1 - lost;
         s += step;
     }
 }
@@ -212,17 +256,17 @@ void LampField::Solver::find_next_order() {
                    static_cast<double>(step.weight[2]) * far[0] +
                    static_cast<double>(step.weight[3]) * far[1];
         }
-        order_[n] = sum * k_radii[n / nh_] * sine_of(k_angles[n % nh_]);
+        order_[n] = sum * radii_[n / nh_] * sine_of(angles_[n % nh_]);
     });
 }
 
 LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-                     double least_albedo, double greatest_albedo, int orders)
+                     double least_albedo, double greatest_albedo, const Fineness& fineness)
     : phase_(direction), line_(line), line_in_table_(line.mass() - line.mass_to(k_angles.front())) {
     // An order that adds less than this is the last; what lies near the end of the table counts for
     // nothing in that.
     constexpr double k_enough = 1e-2, k_counting = 0.5;
-    const std::size_t nr = k_radii.count(), nh = k_angles.count(), n = nr * nh;
+    const std::size_t nr = k_radii.count(), nh = k_angles.count();
     least_albedo_ = std::clamp(least_albedo, k_least_albedo, k_most_albedo - 1e-3);
     albedo_step_ =
         (std::clamp(greatest_albedo, least_albedo_ + 1e-3, k_most_albedo) - least_albedo_) /
@@ -230,33 +274,37 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
     std::array<double, k_albedos> albedo{}, power{};
     for (std::size_t k = 0; k < k_albedos; ++k)
         power[k] = albedo[k] = least_albedo_ + albedo_step_ * static_cast<double>(k);
-    Solver solver(direction, line);
-    const std::vector<double> once = solver.order();
+    Solver solver(direction, line, fineness.is_coarse);
+    std::vector<double> once = solver.order();
     std::vector<std::vector<double>> all(k_albedos), sources(k_albedos);
     for (std::size_t k = 0; k < k_albedos; ++k) {
-        sources[k].assign(n, 0.0);
+        sources[k].assign(solver.size(), 0.0);
         for (const double value : once) all[k].push_back(albedo[k] * value);
     }
-    for (int count = 1; count < orders; ++count) {
+    for (int count = 1; count < fineness.orders; ++count) {
         solver.find_next_order();
         double most = 0;
         for (std::size_t k = 0; k < k_albedos; ++k) {
-            for (std::size_t q = 0; q < n; ++q) sources[k][q] += power[k] * solver.source()[q];
+            for (std::size_t q = 0; q < solver.size(); ++q)
+                sources[k][q] += power[k] * solver.source()[q];
             power[k] *= albedo[k];
-            for (std::size_t q = 0; q < n; ++q) {
+            for (std::size_t q = 0; q < solver.size(); ++q) {
                 const double value = power[k] * solver.order()[q];
                 all[k][q] += value;
-                if (k_radii[q / nh] < k_counting * k_radii.back())
+                if (solver.radius_of(q) < k_counting * k_radii.back())
                     most = std::max(most, value / std::max(all[k][q], k_least_value));
             }
         }
         if (most < k_enough) break;
     }
+    once = solver.at_nodes_of_field(once);
+    for (std::vector<std::vector<double>>* const fields : {&all, &sources})
+        for (std::vector<double>& values : *fields) values = solver.at_nodes_of_field(values);
     const auto log_of = [](double value) {
         return static_cast<float>(std::log(std::max(value, k_least_value)));
     };
     for (std::size_t k = 0; k < k_albedos; ++k) {
-        for (std::size_t q = 0; q < n; ++q) {
+        for (std::size_t q = 0; q < once.size(); ++q) {
             constexpr double k_least_multiple = 1e-3;  // share of all
             const double value = all[k][q];
             all_.push_back(log_of(value));

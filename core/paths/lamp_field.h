@@ -17,15 +17,17 @@ namespace uw {
 /// are made for albedo 1 and added up for three albedos at once.
 class LampField {
   public:
-    /// Enough for all light; fewer are found where more would add nothing.
-    static constexpr int k_all_orders = 400;
+    /// How closely it is found.
+    struct Fineness {
+        int orders = 400;        // the most scatterings; fewer where more would add nothing
+        bool is_coarse = false;  // on a lattice of a quarter of the nodes, by steps twice as long
+    };
 
     /// Not to be looked up.
     LampField() = default;
     /// `direction`, `line`: ScatteringTables::directions and lines of the phase function.
-    /// `orders`: the most scatterings.
     LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-              double least_albedo, double greatest_albedo, int orders);
+              double least_albedo, double greatest_albedo, const Fineness& fineness);
 
     /// Where to look up, for one distance and albedo.
     struct Place {

@@ -32,8 +32,8 @@ std::vector<double> typical_shares(const Medium& medium) {
 
 }  // namespace
 
-ScatteringTables::ScatteringTables(const Medium& medium, int orders)
-    : phases(medium), shares(typical_shares(medium)), orders_(orders) {
+ScatteringTables::ScatteringTables(const Medium& medium, const LampField::Fineness& fineness)
+    : phases(medium), shares(typical_shares(medium)), fineness_(fineness) {
     const std::span<const double> nodes = HalfTangentDensity::nodes();
     const std::size_t count = medium.phase_functions.size();
     std::vector<double> p(count * nodes.size());
@@ -77,7 +77,7 @@ LampField ScatteringTables::make_field() const {
         of_direction.push_back(2 * std::numbers::pi * mean * dpsi * h * dpsi);
     }
     return {HalfTangentDensity(of_direction), HalfTangentDensity(of_line), least_albedo_,
-            greatest_albedo_, orders_};
+            greatest_albedo_, fineness_};
 }
 
 }  // namespace uw

@@ -45,6 +45,13 @@ std::vector<SineWaveDesc> read_sines(ConfigMap& map) {
         folding += waves.back().steepness * waves.back().amplitude * 2 * std::numbers::pi /
                    waves.back().wavelength;
     }
+    // Each is looked at wherever a ray comes near the surface.
+    constexpr std::size_t k_most_waves = 1000;
+    if (waves.size() > k_most_waves)
+        list.fail(
+            fmt::format("has {} waves, and must not have more than {}; leave out the smallest, "
+                        "or write a sea of many as type: jonswap",
+                        waves.size(), k_most_waves));
     if (waves.empty()) list.fail(fmt::format("has no entry; {}", k_mend));
     if (folding > k_most_folding)
         list.fail(fmt::format(

@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <limits>
-#include <new>
 
 #include "core/base/available_memory.h"
 #include "core/base/parallel.h"
@@ -41,8 +40,8 @@ openvdb::FloatGrid::Ptr read_level_set(const VdbHeader& header, const GridSummar
                         "a fog belongs under volumes",
                         prefix, grid.grid_class, background));
     const auto voxels = static_cast<double>(values->activeVoxelCount());
-    if (voxels * k_bytes_per_crossing > static_cast<double>(available_memory_bytes()))
-        throw std::bad_alloc();
+    require_memory(voxels * k_bytes_per_crossing, prefix + "its surface needs",
+                   "resample it to larger voxels");
     return values;
 }
 

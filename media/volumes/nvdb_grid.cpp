@@ -1,5 +1,6 @@
 #include "media/volumes/nvdb_grid.h"
 
+#include <fmt/format.h>
 #include <nanovdb/NanoVDB.h>
 #include <nanovdb/util/GridChecksum.h>
 #include <nanovdb/util/HostBuffer.h>
@@ -10,7 +11,6 @@
 #include <cstdint>
 #include <fstream>
 #include <memory>
-#include <new>
 #include <type_traits>
 #include <vector>
 
@@ -59,7 +59,10 @@ NvdbBytes read_nvdb_bytes(const VdbHeader& header, const GridSummary& grid,
     ByteReader in(header.file, where);
     const auto bytes = static_cast<std::uint64_t>(grid.grid_bytes);
     if (bytes < sizeof(nanovdb::GridData) + sizeof(nanovdb::TreeData<3>)) in.fail_damaged();
-    if (bytes > available_memory_bytes()) throw std::bad_alloc();
+    require_memory(
+        static_cast<double>(bytes),
+        fmt::format("{}: grid '{}' of '{}' needs", where, grid.name, header.file.string()),
+        "resample it to larger voxels");
     const auto storage = std::make_shared<Buffer>(Buffer::create(bytes));
     Buffer& buffer = *storage;
     in.seek(grid.blocks_offset);

@@ -209,9 +209,9 @@ openvdb::FloatGrid::Ptr read_density(const VdbHeader& header, const GridSummary&
         density = concentrations_of(slab, grid, prefix, level_sets, loaded.statistics.background);
     });
     loaded.statistics = sanitize(density->tree()).statistics(loaded.statistics.background);
-    constexpr std::uint64_t k_bytes_per_voxel = 2 * sizeof(float);  // the grid and its average
-    if (density->baseTree().activeVoxelCount() > available_memory_bytes() / k_bytes_per_voxel)
-        throw std::bad_alloc();
+    constexpr double k_bytes_per_voxel = 2 * sizeof(float);  // the grid and its average
+    require_memory(k_bytes_per_voxel * static_cast<double>(density->baseTree().activeVoxelCount()),
+                   prefix + "its voxels in motion need", "resample it to larger voxels");
     density->tree().voxelizeActiveTiles();
     return density;
 }

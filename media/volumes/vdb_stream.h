@@ -8,6 +8,7 @@
 #include <new>
 #include <string>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/vector_math.h"
@@ -45,10 +46,13 @@ auto read_guarded(const std::string& prefix, const Read& read) {
         throw;
     } catch (const Interrupted&) {
         throw;
+    } catch (const OutOfMemory&) {
+        throw;
     } catch (const std::ios_base::failure&) {
         throw InputError(prefix + "the file is truncated or damaged; copy or export it again");
     } catch (const std::bad_alloc&) {
-        throw InputError(prefix + "it needs more memory than is available");
+        throw OutOfMemory(prefix +
+                          "it needs more memory than is free; resample it to larger voxels");
     } catch (const std::exception& error) {
         constexpr std::size_t k_longest = 200;  // it may quote the file
         throw InputError(prefix + "cannot be read: " + printable(error.what(), k_longest));

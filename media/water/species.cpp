@@ -261,6 +261,17 @@ class SizeAverage {
 
     const std::vector<double>& angles() const { return angles_; }
 
+    /// The terms of all sizes, which are evenly spread over the logarithm of their diameters.
+    double work() const {
+        const double greatest = wave_number_ * std::exp(sizes_.last()) / 2;
+        const double least = wave_number_ * std::exp(sizes_.first()) / 2;
+        const double octaves = sizes_.last() - sizes_.first();
+        const double mean = octaves > 0 ? (greatest - least) / octaves : greatest;
+        constexpr double k_fewest_orders = 8;
+        return static_cast<double>(k_most) * static_cast<double>(angles_.size()) *
+               (mean + k_fewest_orders);
+    }
+
     /// All that the sums depend on, and the version of how they are found.
     std::string text() const {
         const auto of = [](std::complex<double> index) {
@@ -497,6 +508,13 @@ SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm,
     return species_optics(species, wavelength_nm,
                           water_refractive_index(wavelength_nm, water.temperature, water.salinity),
                           progress);
+}
+
+double species_work(const SpeciesDesc& species, double wavelength_nm, const WaterDesc& water) {
+    if (species.vsf || species.kopelevich) return 0;
+    return SizeAverage(species, wavelength_nm,
+                       water_refractive_index(wavelength_nm, water.temperature, water.salinity))
+        .work();
 }
 
 std::vector<SpeciesDesc> all_species(const WaterDesc& water) {

@@ -41,6 +41,10 @@ SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, d
 SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm,
                              const WaterDesc& water, const ShareCallback& progress = {});
 
+/// How much work it is to find that: the most terms of Lorenz and Mie's series that are added up,
+/// of all sizes, orders and angles. 0 for a species that is not computed.
+double species_work(const SpeciesDesc& species, double wavelength_nm, const WaterDesc& water);
+
 /// The species of a water, followed by those that every water has: Kopelevich's "small" and
 /// "large".
 std::vector<SpeciesDesc> all_species(const WaterDesc& water);

@@ -29,12 +29,16 @@ struct SpeciesInBand {
 /// The source of a phase function of the medium: equal sources share one.
 using PhaseSource = std::variant<PhaseFunctionDesc, KopelevichClass, SpeciesInBand>;
 
+/// The most species_work of all species in all bands: some ten minutes of two processors.
+constexpr double k_most_species_work = 2e11;
+
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
 class Builder {
   public:
     Builder(const WaterDesc& water, const ShareCallback& progress);
 
-    /// Counts the species that will be needed, so that progress is that of all.
+    /// Adds up the work that the species are which will be needed, so that progress is that of all.
+    /// Throws InputError if it is too much.
     void expect(const std::vector<VolumeDesc>& volumes);
     void add_uniform();
     void add_strata();
@@ -77,7 +81,7 @@ class Builder {
     const std::size_t band_count_;
     std::optional<DepthProfile> profile_;
     std::vector<Strata::Curve> curves_;
-    std::size_t expected_ = 0, done_ = 0;     // species to be computed
+    double expected_ = 0, done_ = 0;          // species_work of those to be computed
     std::vector<bool> known_species_;         // those that have been asked for
     std::vector<PhaseSource> phase_sources_;  // one per medium phase function
     std::vector<OpticsEntry> optics_;
@@ -216,8 +220,21 @@ void Builder::expect(const std::vector<VolumeDesc>& volumes) {
     use(water_.amounts);
     for (const VolumeDesc& volume : volumes)
         for (const GridMappingDesc& grid : volume.grids) use(grid.amounts);
-    for (std::size_t i = 0; i < species_.size(); ++i)
-        if (used[i] && !species_[i].kopelevich) expected_ += band_count_;
+    std::size_t most = 0;  // the species that is the most work
+    double work_of_most = 0;
+    for (std::size_t i = 0; i < species_.size(); ++i) {
+        if (!used[i]) continue;
+        double work = 0;
+        for (const double band : water_.bands_nm) work += species_work(species_[i], band, water_);
+        expected_ += work;
+        if (work > work_of_most) most = i, work_of_most = work;
+    }
+    if (expected_ > k_most_species_work)
+        throw InputError(fmt::format(
+            "{}: to compute the species takes {:.2g} times the work that is allowed, most of it "
+            "{}; "
+            "give smaller greatest diameters, fewer species or fewer bands",
+            species_[most].where, expected_ / k_most_species_work, species_[most].name));
 }
 
 void Builder::warn_of_held_wavelengths(std::size_t species) {
@@ -249,15 +266,16 @@ void Builder::add_species(std::size_t species, double ppm, double absorbing_ppm,
             model.warnings.push_back(std::move(*warning));
     }
     for (std::size_t i = 0; i < band_count_; ++i) {
+        const double work =
+            is_first ? species_work(species_[species], water_.bands_nm[i], water_) : 0;
         ShareCallback tell;
         if (progress_)
             tell = [&](double share) {
-                const auto all = static_cast<double>(std::max(expected_, done_ + 1));
-                progress_((static_cast<double>(done_) + share) / all);
+                progress_((done_ + share * work) / std::max(expected_, done_ + work));
             };
         const SpeciesOptics optics =
             species_optics(species_[species], water_.bands_nm[i], water_, tell);
-        if (is_first && !kopelevich) ++done_;
+        done_ += work;
         const PhaseSource source =
             kopelevich ? PhaseSource(*kopelevich) : PhaseSource(SpeciesInBand{species, i});
         const std::size_t phase = phase_index_of(source, [&] { return optics.phase; });

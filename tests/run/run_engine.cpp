@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <atomic>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/available_memory.h"
 #include "core/base/error.h"
 #include "tests/support/test_scene.h"
 
@@ -82,6 +85,85 @@ TEST(RunEngine, HandsOverAllImagesAsTheyAre) {
         const std::size_t written = place_of(client, std::string("written ") + place);
         EXPECT_LT(written, client.told.size());
         EXPECT_GT(written, place_of(client, std::string("take ") + place));
+    }
+}
+
+/// Memory is short for so many readings, in seconds that pass at once.
+struct Shortage {
+    explicit Shortage(int readings) : left(readings) {
+        wait.read = [this]() -> FreeMemory {
+            constexpr std::uint64_t k_little = 1'000'000, k_much = 64'000'000'000;
+            return {left-- > 0 ? k_little : k_much, k_much, k_much};
+        };
+        wait.sleep = [this](double seconds) { slept += seconds; };
+    }
+    int left;
+    double slept = 0;
+    MemoryWait wait;
+};
+
+TEST(RunEngine, OutlastsAShortageOfMemory) {
+    JobScenes scenes(scene_of);
+    Recorder client;
+    RunEngine engine;
+    Shortage shortage(30);
+    const MemoryWaitScope scope(shortage.wait);
+    engine.run({scenes, images_of_scenes({3, 1})}, client);
+    EXPECT_EQ(engine.written(), 2U);
+    EXPECT_GT(shortage.slept, 1);
+    const auto is_of_memory = [](const std::string& line) {
+        return line.find("but only 0.001 GB are free") != std::string::npos &&
+               line.ends_with("it is tried again for 60 s");
+    };
+    EXPECT_EQ(std::ranges::count_if(client.warnings, is_of_memory), 1);
+    for (const auto& [place, number] : {std::pair{0U, 3}, {1U, 1}}) {
+        Renderer alone;
+        alone.set_scene(scene_of(number));
+        EXPECT_TRUE(std::ranges::equal(client.films[place].values(),
+                                       alone.render({.layers = "depth"}).values()));
+    }
+}
+
+TEST(RunEngine, EndsWithALastingShortageOfMemory) {
+    JobScenes scenes(scene_of);
+    Recorder client;
+    RunEngine engine;
+    Shortage shortage(1'000'000);
+    const MemoryWaitScope scope(shortage.wait);
+    EXPECT_THROW(engine.run({scenes, images_of_scenes({3, 1})}, client), OutOfMemory);
+    EXPECT_GE(shortage.slept, 60);
+    // A single image is not worth a minute.
+    shortage.slept = 0;
+    EXPECT_THROW(engine.run({scenes, images_of_scenes({3})}, client), OutOfMemory);
+    EXPECT_LT(shortage.slept, 5);
+}
+
+// What nobody reads is not computed; what is read belongs to the first image.
+TEST(RunEngine, LooksForLightLeftOutWhereItIsRead) {
+    for (const bool is_read : {false, true}) {
+        class Reader : public Recorder {
+          public:
+            explicit Reader(bool reads) : reads_(reads) {}
+            bool reads_light_note() const override { return reads_; }
+            ImageWork take(std::size_t place, FinishedImage image) override {
+                notes.push_back(image.report.light_note);
+                return Recorder::take(place, std::move(image));
+            }
+            std::vector<std::string> notes;
+
+          private:
+            bool reads_;
+        } client(is_read);
+        JobScenes scenes([](int number) {
+            SceneDesc scene = scene_of(number);
+            scene.water.scattering->b = {2, 2, 2};
+            return scene;
+        });
+        RunEngine engine;
+        engine.run({scenes, images_of_scenes({3, 1})}, client);
+        ASSERT_EQ(client.notes.size(), 2U);
+        EXPECT_EQ(!client.notes[0].empty(), is_read) << client.notes[0];
+        EXPECT_EQ(client.notes[1], "");
     }
 }
 

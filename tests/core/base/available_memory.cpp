@@ -4,10 +4,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "core/base/random.h"
 #include "tests/support/temp_dir.h"
 
 namespace uw {
@@ -28,9 +34,9 @@ TEST(AvailableMemory, IsSomeAndNoMoreThanMachineAndContainerHave) {
 }
 
 /// The files of a machine with 8 GB free.
-class FreeMemory : public testing::Test {
+class FreeMemoryFiles : public testing::Test {
   protected:
-    FreeMemory() { write("proc/meminfo", "MemAvailable: 7812500 kB\nSwapFree: 0 kB\n"); }
+    FreeMemoryFiles() { write("proc/meminfo", "MemAvailable: 7812500 kB\nSwapFree: 0 kB\n"); }
     void write(const std::string& name, const std::string& text) const {
         const std::filesystem::path file = folder_ / name;
         std::filesystem::create_directories(file.parent_path());
@@ -42,14 +48,14 @@ class FreeMemory : public testing::Test {
     test::TempDir folder_;
 };
 
-TEST_F(FreeMemory, IsTheMachinesWhereNothingLimitsIt) {
+TEST_F(FreeMemoryFiles, IsTheMachinesWhereNothingLimitsIt) {
     EXPECT_EQ(available(), k_all);
     write("proc/self/cgroup", "0::/user.slice\n");
     write("sys/fs/cgroup/user.slice/memory.max", "max\n");
     EXPECT_EQ(available(), k_all);
 }
 
-TEST_F(FreeMemory, IsWhatTheControlGroupLeaves) {
+TEST_F(FreeMemoryFiles, IsWhatTheControlGroupLeaves) {
     write("proc/self/cgroup", "0::/user.slice/job\n");
     write("sys/fs/cgroup/user.slice/job/memory.max", "2000000000\n");
     write("sys/fs/cgroup/user.slice/job/memory.current", "900000000\n");
@@ -65,7 +71,7 @@ TEST_F(FreeMemory, IsWhatTheControlGroupLeaves) {
     EXPECT_EQ(available(), 0U);
 }
 
-TEST_F(FreeMemory, IsWhatAGroupOfTheFirstVersionLeaves) {
+TEST_F(FreeMemoryFiles, IsWhatAGroupOfTheFirstVersionLeaves) {
     write("proc/self/cgroup", "4:cpu,cpuacct:/job\n3:memory:/job\n");
     write("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
     write("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "2000000000\n");
@@ -75,11 +81,127 @@ TEST_F(FreeMemory, IsWhatAGroupOfTheFirstVersionLeaves) {
     EXPECT_EQ(available(), 1'600'000'000U);
 }
 
-TEST_F(FreeMemory, IsThatOfTheContainerInsideOfIt) {
+TEST_F(FreeMemoryFiles, IsThatOfTheContainerInsideOfIt) {
     write("proc/self/cgroup", "0::/\n");
     write("sys/fs/cgroup/memory.max", "2000000000\n");
     write("sys/fs/cgroup/memory.current", "200000000\n");
     EXPECT_EQ(available(), 1'800'000'000U);
+}
+
+TEST_F(FreeMemoryFiles, IsAtMostWhatThereIs) {
+    write("proc/meminfo",
+          "MemTotal: 15625000 kB\nMemAvailable: 7812500 kB\nSwapTotal: 1000 kB\nSwapFree: 0 kB\n");
+    EXPECT_EQ(read_free_memory(folder_.path()).most, 2 * k_all + 1'024'000);
+    EXPECT_EQ(read_free_memory(folder_.path()).shared, k_all);
+    write("proc/self/cgroup", "0::/job\n");
+    write("sys/fs/cgroup/job/memory.max", "2000000000\n");
+    write("sys/fs/cgroup/job/memory.current", "900000000\n");
+    EXPECT_EQ(read_free_memory(folder_.path()).most, 2'000'000'000U);
+    EXPECT_EQ(read_free_memory(folder_.path()).shared, 1'100'000'000U);
+}
+
+/// What require_memory does while memory is as `readings` say, the last of them for ever.
+class Required {
+  public:
+    explicit Required(std::vector<FreeMemory> readings) : readings_(std::move(readings)) {
+        wait_.read = [this] { return readings_[std::min(read_++, readings_.size() - 1)]; };
+        wait_.sleep = [this](double seconds) { slept_ += seconds; };
+        wait_.tell = [this](const std::string& line) { told_.push_back(line); };
+    }
+
+    /// Its message; empty: there was enough.
+    std::string of(double bytes, double seconds) {
+        wait_.seconds = seconds;
+        const MemoryWaitScope scope(wait_);
+        try {
+            require_memory(bytes, "this needs", "ask for less");
+            return "";
+        } catch (const OutOfMemory& error) {
+            is_input_ = false;
+            return error.what();
+        } catch (const InputError& error) {
+            is_input_ = true;
+            return error.what();
+        }
+    }
+    bool is_input() const { return is_input_; }
+    double slept() const { return slept_; }
+    const std::vector<std::string>& told() const { return told_; }
+
+  private:
+    std::vector<FreeMemory> readings_;
+    MemoryWait wait_;
+    std::size_t read_ = 0;
+    double slept_ = 0;
+    bool is_input_ = false;
+    std::vector<std::string> told_;
+};
+
+constexpr std::uint64_t k_any = std::numeric_limits<std::uint64_t>::max();
+
+TEST(RequiredMemory, IsThere) {
+    Required required({{2'000'000'000, k_any, k_any}});
+    EXPECT_EQ(required.of(1e9, 60), "");
+    EXPECT_EQ(required.slept(), 0);
+}
+
+// Free memory that goes up and down: the number that is printed is the one that was compared, so
+// that the message never contradicts itself.
+TEST(RequiredMemory, PrintsWhatItComparedWith) {
+    PathRandom random(PathRandom::seed_of(7, 1), 0);
+    int refused = 0;
+    for (int n = 0; n < 200; ++n) {
+        std::vector<FreeMemory> readings;
+        for (int k = 0; k < 40; ++k)
+            readings.push_back({static_cast<std::uint64_t>(2e9 * random.next()), k_any, k_any});
+        const double bytes = 1e9 * (1 + random.next());
+        Required required(readings);
+        const std::string line = required.of(bytes, random.next());
+        if (line.empty()) continue;
+        ++refused;
+        double needed = 0, free = 0;
+        ASSERT_EQ(std::sscanf(line.c_str(),
+                              "this needs %lg GB of memory, but only %lg GB are free; ask for less",
+                              &needed, &free),
+                  2)
+            << line;
+        EXPECT_NEAR(needed, bytes * 1e-9, 0.005 * needed);  // three digits
+        EXPECT_LE(free, needed) << line;
+    }
+    EXPECT_GT(refused, 5);
+}
+
+TEST(RequiredMemory, IsWaitedForAndToldOfOnce) {
+    const FreeMemory little{1'000'000, k_any, 8'000'000'000}, enough{2'000'000'000, k_any, k_any};
+    std::vector<FreeMemory> readings(30, little);
+    readings.push_back(enough);
+    Required required(readings);
+    EXPECT_EQ(required.of(1e9, 60), "");
+    EXPECT_GT(required.slept(), 1);
+    EXPECT_LT(required.slept(), 10);
+    ASSERT_EQ(required.told().size(), 1U);
+    EXPECT_NE(required.told()[0].find("this needs 1 GB of memory, but only 0.001 GB are free"),
+              std::string::npos);
+}
+
+TEST(RequiredMemory, IsNotWaitedForForEver) {
+    Required required({{1'000'000, k_any, 8'000'000'000}});
+    EXPECT_NE(required.of(1e9, 60), "");
+    EXPECT_FALSE(required.is_input());
+    EXPECT_GE(required.slept(), 60);
+    EXPECT_LT(required.slept(), 61);
+}
+
+// No waiting helps against what the machine has not, or what this process may not have.
+TEST(RequiredMemory, IsRefusedAtOnceWhereItCannotBe) {
+    Required more_than_all({{1'000'000, k_any, 8'000'000'000}});
+    EXPECT_NE(more_than_all.of(9e9, 60), "");
+    EXPECT_TRUE(more_than_all.is_input());
+    EXPECT_EQ(more_than_all.slept(), 0);
+    Required limited({{k_any, 1'000'000, k_any}});
+    EXPECT_NE(limited.of(1e9, 60), "");
+    EXPECT_FALSE(limited.is_input());
+    EXPECT_EQ(limited.slept(), 0);
 }
 
 }  // namespace

@@ -466,9 +466,9 @@ TEST(Waves, SlopesAreComparedWithCoxAndMunks) {
 
 class WaveImage : public ::testing::Test {
   protected:
-    WaterWaves read(const std::filesystem::path& file) const {
+    WaterWaves read(const std::filesystem::path& file, double width = 8) const {
         WavesDesc desc;
-        desc.shape = HeightImageDesc{file, 8};
+        desc.shape = HeightImageDesc{file, width};
         desc.where = "waves";
         return {desc, 0};
     }
@@ -515,6 +515,54 @@ TEST_F(WaveImage, RefusesWhatIsNoHeight) {
               std::string::npos);
     EXPECT_NE(message(folder_.write("heights.png", "x")).find("save it as OpenEXR"),
               std::string::npos);
+}
+
+// The way to a surface is found in steps that are the shorter the steeper it is: what has slopes
+// for which a ray would take minutes is refused, and says how to mend it.
+TEST_F(WaveImage, RefusesSlopesThatNoWaterHas) {
+    const std::filesystem::path file = write();
+    EXPECT_NO_THROW(read(file, 0.1));  // of up to 6: 0.08 times as wide as the waves were
+    for (const double width : {1e-2, 1e-6, 1e-300}) {
+        const std::string message = message_of<InputError>([&] { read(file, width); });
+        EXPECT_EQ(message.find("waves: its slopes are up to "), 0U) << message;
+        EXPECT_NE(message.find("give the image a greater width"), std::string::npos) << message;
+    }
+}
+
+// Whatever their keys are: each kind is there with slopes that water may have, or is refused.
+TEST(Waves, AreNotTooSteepWhateverTheirKeys) {
+    std::mt19937 numbers(3);
+    const auto between = [&](double least, double most) {  // evenly in the logarithm
+        return least * std::pow(most / least, std::uniform_real_distribution(0.0, 1.0)(numbers));
+    };
+    int made = 0, refused = 0;
+    for (int n = 0; n < 200; ++n) {
+        WavesDesc desc;
+        if (n % 2 == 0) {
+            desc = sum_of({{between(1e-6, 1e3), between(1e-6, 1e3), 10, 0, 0},
+                           {between(1e-6, 1e3), between(1e-6, 1e3), 80, 20, 0}});
+        } else {
+            WaveSpectrumDesc sea = sea_of(WaveSpectrumDesc::Model::jonswap);
+            sea.wind = between(0.5, 60);
+            sea.fetch = between(1e-9, 1e9);
+            sea.gamma = between(1, 10);
+            sea.spreading = between(0.5, 1000);
+            sea.tile = between(1e-6, 1e6);
+            sea.resolution = 16;
+            desc = desc_of(sea);
+        }
+        try {
+            const WaterWaves waves(desc, 0);
+            ++made;
+            EXPECT_LE(waves.steepest(), 30);
+            for (const double u : {0.0, 0.3, 1.7})
+                EXPECT_LE(std::hypot(waves.at(u, 0.1).slope_u, waves.at(u, 0.1).slope_v), 30);
+        } catch (const InputError&) {
+            ++refused;
+        }
+    }
+    EXPECT_GT(made, 20);
+    EXPECT_GT(refused, 20);
 }
 
 }  // namespace

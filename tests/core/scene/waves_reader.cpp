@@ -90,5 +90,15 @@ TEST_F(WavesReader, RefusesWhatItDoesNotUse) {
     expect_refused("{type: image, file: h.exr, width: 3, depth: 3}", "waves of type 'image'");
 }
 
+TEST_F(WavesReader, RefusesMoreWavesThanRaysCanLookAt) {
+    const auto sines = [](int count) {
+        std::string text = "{type: sines, waves: [";
+        for (int n = 0; n < count; ++n) text += "{amplitude: 0.001, wavelength: 3}, ";
+        return text + "]}";
+    };
+    EXPECT_NO_THROW(read(sines(1000)));
+    expect_refused(sines(1001), "waves: has 1001 waves, and must not have more than 1000");
+}
+
 }  // namespace
 }  // namespace uw::test

@@ -69,7 +69,7 @@ TEST(NvdbBytes, OfMoreThanTheMemoryAreNotTried) {
         header.grids[0].grid_bytes = bytes;
         return test::message_of<InputError>([&] { load_grid(header, "density", test::k_where); });
     };
-    test::expect_contains(refusal_of_bytes(INT64_MAX), "needs more memory than is available");
+    test::expect_contains(refusal_of_bytes(INT64_MAX), "needs 9.22e+09 GB of memory, but only");
     // Less than a grid begins with.
     test::expect_contains(refusal_of_bytes(10), "truncated or damaged");
 }

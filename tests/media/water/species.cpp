@@ -483,5 +483,59 @@ TEST(Species, ErrorsSayWhatIsWrong) {
               std::string::npos);
 }
 
+// The terms of each size are its orders, about 2 pi r / lambda of them, times the angles: a sum
+// over the sizes that there may be.
+TEST(Species, WorkIsCounted) {
+    const WaterDesc water;
+    constexpr double k_nm = 550, k_index = 1.336;
+    const auto sum_of_orders = [&](const SpeciesDesc& species) {
+        constexpr int k_sizes = 2048;
+        const double ratio = species.sizes.greatest / species.sizes.least;
+        double orders = 0;
+        for (int i = 0; i < k_sizes; ++i) {
+            const double diameter = species.sizes.least * std::pow(ratio, (i + 0.5) / k_sizes);
+            orders += std::numbers::pi * diameter * k_index / (k_nm * 1e-9);
+        }
+        return orders;
+    };
+    // Some hundred angles, the more the narrower the forward peak is.
+    double before = 200;
+    for (const double greatest_um : {50.0, 500.0, 5000.0}) {
+        const SpeciesDesc species = junge(1.1, 0.5, greatest_um);
+        const double angles = species_work(species, k_nm, water) / sum_of_orders(species);
+        EXPECT_GT(angles, before) << greatest_um;
+        EXPECT_LT(angles, 1000) << greatest_um;
+        before = angles;
+    }
+    SpeciesDesc measured = junge(1.1, 1, 50);
+    measured.kopelevich = KopelevichClass::small;
+    EXPECT_EQ(species_work(measured, k_nm, water), 0);
+}
+
+// What would take hours is refused before any of it is computed, wherever the species is used.
+TEST(Species, AreRefusedWhereTheyWouldTakeHours) {
+    std::string bands = "[400";
+    for (int nm = 408; nm < 656; nm += 8) bands += ", " + std::to_string(nm);
+    for (const char* const size : {"{type: lognormal, median: 5 mm, sigma: 1.02}",
+                                   "{type: gamma, mode: 4 mm, diameter: [3 mm, 5 mm]}",
+                                   "{type: junge, diameter: [4.9 mm, 5 mm]}"}) {
+        const std::string text = std::string("{species: {stones: {size: ") + size +
+                                 ", index: 1.15}}, particles: {stones: 1}, bands: " + bands + "]}";
+        const std::string message =
+            message_of<InputError>([&] { (void)build_water_model(water(text), {}); });
+        EXPECT_NE(message.find("water.species.stones: to compute the species takes "),
+                  std::string::npos)
+            << message;
+        EXPECT_NE(message.find("most of it stones; give smaller greatest diameters"),
+                  std::string::npos)
+            << message;
+    }
+    // One that nothing has costs nothing.
+    const std::string unused =
+        "{species: {stones: {size: {type: junge, diameter: [4 mm, 5 mm]}, index: 1.15}}, bands: " +
+        bands + "]}";
+    EXPECT_NO_THROW((void)build_water_model(water(unused), {}));
+}
+
 }  // namespace
 }  // namespace uw

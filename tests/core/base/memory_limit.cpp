@@ -1,6 +1,5 @@
 // ctest labels: unit
-#include "cli/process.h"
-
+// The limit that a process sets itself (limit_memory).
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
@@ -70,6 +69,26 @@ TEST(MemoryLimit, IsAvailableMemory) {
             ::setrlimit(RLIMIT_DATA, &limit);
             const std::uint64_t available = available_memory_bytes();
             std::_Exit(available <= k_more && available > k_more / 2 ? 7 : 1);
+        },
+        testing::ExitedWithCode(7), "^$");
+}
+
+// Whatever else ran when it was set: here it begins at next to nothing, and is then that of now.
+TEST(MemoryLimit, IsRenewed) {
+    EXPECT_EXIT(
+        {
+            renew_memory_limit();
+            const bool is_unset = data_limit() == RLIM_INFINITY;
+            limit_memory();
+            rlimit limit{};
+            ::getrlimit(RLIMIT_DATA, &limit);
+            constexpr rlim_t k_next_to_nothing = 1'000'000;
+            limit.rlim_cur = data_bytes() + k_next_to_nothing;
+            ::setrlimit(RLIMIT_DATA, &limit);
+            const std::uint64_t before = available_memory_bytes();
+            renew_memory_limit();
+            const bool is_more = available_memory_bytes() > 10 * k_next_to_nothing;
+            std::_Exit(is_unset && before <= k_next_to_nothing && is_more ? 7 : 1);
         },
         testing::ExitedWithCode(7), "^$");
 }
