@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/csv_table.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/base/text.h"
@@ -100,23 +101,40 @@ std::vector<ObservedPicture> posed_pictures(const std::filesystem::path& images,
     return posed;
 }
 
-std::string transforms_json(std::span<const std::string> names, std::span<const Affine> poses) {
+std::string transforms_json(std::span<const std::string> names, std::span<const FoundPose> poses) {
     Json frames = Json::array();
     for (std::size_t i = 0; i < names.size(); ++i) {
         // There y is up and z backward.
         const Vector3 signs{1, -1, -1};
+        const Affine& pose = poses[i].world_from_camera;
         Json rows = Json::array();
         for (int row = 0; row < 3; ++row) {
             Json numbers = Json::array();
             for (int column = 0; column < 3; ++column)
-                numbers.push_back(number_json(signs[column] * poses[i].linear()[column][row]));
-            numbers.push_back(number_json(poses[i].offset()[row]));
+                numbers.push_back(number_json(signs[column] * pose.linear()[column][row]));
+            numbers.push_back(number_json(pose.offset()[row]));
             rows.push_back(numbers);
         }
         rows.push_back({0, 0, 0, 1});
-        frames.push_back({{"file_path", names[i]}, {"transform_matrix", rows}});
+        frames.push_back({{"file_path", names[i]},
+                          {"transform_matrix", rows},
+                          {"position_error", vector_json(poses[i].position_error)},
+                          {"turn_error", vector_json(poses[i].turn_error)}});
     }
     return json_text({{"frames", frames}});
+}
+
+std::string pose_csv(std::span<const std::string> names, std::span<const FoundPose> poses) {
+    std::string text =
+        "image,x,y,z,x_error,y_error,z_error,turn_x_error,turn_y_error,turn_z_error\n";
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        text += csv_text(names[i]);
+        for (const Vector3& three :
+             {poses[i].world_from_camera.offset(), poses[i].position_error, poses[i].turn_error})
+            text += fmt::format(",{:.9g},{:.9g},{:.9g}", three.x, three.y, three.z);
+        text += "\n";
+    }
+    return text;
 }
 
 }  // namespace uw

@@ -8,6 +8,7 @@
 
 #include "core/base/vector_math.h"
 #include "fit/picture_residuals.h"
+#include "fit/point_residuals.h"
 
 namespace uw {
 
@@ -23,7 +24,12 @@ std::vector<ObservedPicture> posed_pictures(const std::filesystem::path& images,
                                             const std::function<void(const std::string&)>& say);
 
 /// Poses as nerfstudio's transforms.json has them, which posed_pictures reads: of pictures by their
-/// names, world_from_camera, whose axes are x right, y down, z forward.
-std::string transforms_json(std::span<const std::string> names, std::span<const Affine> poses);
+/// names, world_from_camera, whose axes are x right, y down, z forward; with the standard errors of
+/// positions [m] and turns [degrees], null for what is not determined.
+std::string transforms_json(std::span<const std::string> names, std::span<const FoundPose> poses);
+
+/// The same as a table: image, x, y, z, x_error, y_error, z_error [m] and turn_x_error,
+/// turn_y_error, turn_z_error about the camera's axes [degrees].
+std::string pose_csv(std::span<const std::string> names, std::span<const FoundPose> poses);
 
 }  // namespace uw

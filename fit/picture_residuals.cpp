@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -45,9 +46,24 @@ double step_of(const SceneUnknown& unknown, bool has_all_light) {
     return 0.3 * std::max(std::abs(unknown.start), 0.25 * unknown.scale);
 }
 
-/// The least pixels of an image of all light, which has a node at each: with fewer, what lies
-/// between nodes is smoothed away (docs/multiple.md).
-constexpr double k_least_nodes = 2300;
+/// The least pixels that are rendered of a picture. Water's light is that at a pixel's middle; with
+/// fewer, how it bends within a pixel is more than 1e-3 of it. Of all light each pixel has a node,
+/// and what lies between nodes is smoothed away (docs/multiple.md).
+constexpr double k_least_pixels = 2300;
+
+/// The side of cells, of which about so many lie across a picture [pixels]. It is whole, so that a
+/// cell is what the pixels of a coarser image cover. Of a mosaic it is odd: then the pixels of each
+/// colour have their middle in that of the cell, wherever the pattern begins in it.
+int side_of_cells(const CameraDesc& camera, int cells) {
+    const double side = static_cast<double>(camera.width) / cells;
+    if (camera.sensor && is_bayer(camera.sensor->mosaic))
+        return 1 + 2 * std::max(1, static_cast<int>(std::lround((side - 1) / 2)));
+    return std::clamp(static_cast<int>(std::lround(side)), 1,
+                      std::min(camera.width, camera.height));
+}
+
+/// The fewest pixels across which scatter is measured: that of fewer is known too badly.
+constexpr int k_least_scatter_side = 5;
 
 void refuse_developed(const SensorDesc& sensor) {
     if (sensor.image.is_raw) return;
@@ -95,22 +111,72 @@ class Values {
         return image_.is_linear ? std::numeric_limits<double>::infinity() : k_nearly;
     }
 
-    /// The variance of a sensor's number around its mean `number`, as EMVA 1288 has it; none if it
-    /// is not known.
-    std::optional<double> variance(double number) const {
-        if (!sensor_) return std::nullopt;
-        const double gain = sensor_->system_gain();
-        const double signal = std::max(0.0, number - sensor_->black_level);
-        const double shot = sensor_->shot_noise ? gain * signal : 0;
-        const double dark = std::hypot(sensor_->read_noise, sensor_->dsnu) * gain;
-        constexpr double k_rounding = 1.0 / 12;
-        return shot + dark * dark + std::pow(sensor_->prnu * signal, 2) + k_rounding;
+    /// Whether all of a pixel shows something: nothing of it is masked by the alpha of its file.
+    bool is_whole(int x, int y) const {
+        if (image_.channels != 2 && image_.channels != 4) return true;
+        const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
+                           static_cast<std::size_t>(x);
+        return image_.pixels[(index + 1) * static_cast<std::size_t>(image_.channels) - 1] >= 1;
     }
+    int width() const { return image_.width; }
+    int height() const { return image_.height; }
 
   private:
     PixelImage image_;
     const std::optional<SensorDesc>& sensor_;
 };
+
+/// The variance of a sensor's number around its mean `number`, as EMVA 1288 has it.
+double variance_of(double number, const SensorDesc& sensor) {
+    const double gain = sensor.system_gain();
+    const double signal = std::max(0.0, number - sensor.black_level);
+    const double shot = sensor.shot_noise ? gain * signal : 0;
+    const double dark = std::hypot(sensor.read_noise, sensor.dsnu) * gain;
+    constexpr double k_rounding = 1.0 / 12;
+    return shot + dark * dark + std::pow(sensor.prnu * signal, 2) + k_rounding;
+}
+
+/// How the values of a colour are spread over a window of a picture.
+struct Spread {
+    double count = 0, sum = 0, squares = 0, least = 1e300, most = -1e300;
+
+    Spread(const Values& values, const PixelWindow& window, std::size_t colour) {
+        for (int y = window.y0; y < window.y1; ++y)
+            for (int x = window.x0; x < window.x1; ++x)
+                if (const std::optional<double> value = values.at(x, y, colour)) {
+                    if (!std::isfinite(*value)) continue;
+                    count += 1;
+                    sum += *value;
+                    squares += *value * *value;
+                    least = std::min(least, *value);
+                    most = std::max(most, *value);
+                }
+    }
+    double mean() const { return sum / count; }
+    double variance() const {
+        if (!(most > least) || count < 2) return 0;
+        return std::max(0.0, (squares - sum * mean()) / (count - 1));
+    }
+};
+
+/// Whether a cell can be compared: the lens sees all of it in the water, and no pixel is white,
+/// masked or no number.
+bool is_comparable(const Camera& camera, const Values& values, const PixelWindow& window,
+                   std::size_t colours) {
+    for (const int x : {window.x0, window.x1})
+        for (const int y : {window.y0, window.y1})
+            if (!camera.refracted_ray(x, y)) return false;
+    const double white = values.white();
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x) {
+            if (!values.is_whole(x, y)) return false;
+            for (std::size_t k = 0; k < colours; ++k) {
+                const std::optional<double> value = values.at(x, y, k);
+                if (value && (!(*value < white) || !std::isfinite(*value))) return false;
+            }
+        }
+    return true;
+}
 
 /// The image of a scene that a picture shows.
 ImageScene scene_of_picture(const SceneDesc& scene, const ObservedPicture& picture) {
@@ -170,18 +236,24 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     model_error_ = model_error(scene);
     for (const SceneUnknown& unknown : unknowns_.all())
         steps_.push_back(step_of(unknown, has_all_light_));
-    width_ = std::min(cells, scene.camera.width);
-    cell_side_ = static_cast<double>(scene.camera.width) / width_;
-    height_ = std::max(1, static_cast<int>(std::lround(scene.camera.height / cell_side_)));
-    if (has_all_light_)
-        pixels_per_side_ =
-            std::clamp(static_cast<int>(std::ceil(std::sqrt(k_least_nodes / (width_ * height_)))),
-                       1, std::max(1, static_cast<int>(cell_side_)));
+    sensor_ = scene.camera.sensor;
+    cell_side_ = side_of_cells(scene.camera, cells);
+    width_ = scene.camera.width / cell_side_;
+    height_ = scene.camera.height / cell_side_;
+    if (width_ == 0 || height_ == 0)
+        throw InputError(fmt::format("the pictures of {} x {} pixels are too small to compare",
+                                     scene.camera.width, scene.camera.height));
+    // What is left over is shared out between the edges.
+    left_ = (scene.camera.width - cell_side_ * width_) / 2;
+    top_ = (scene.camera.height - cell_side_ * height_) / 2;
+    pixels_per_side_ = std::clamp(
+        static_cast<int>(std::ceil(std::sqrt(k_least_pixels / (width_ * height_)))), 1, cell_side_);
     for (std::size_t i = 0; i < files_.size(); ++i) {
         names_.push_back(files_[i].file.filename().string());
         renderers_.emplace_back();
         read(i, scene);
     }
+    weigh(Weights::by_observation);
     const std::size_t all =
         files_.size() * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
     constexpr double k_least_share = 0.01;
@@ -207,53 +279,76 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
             file.string(), counted(static_cast<std::size_t>(image.channels), "channel")));
     if (!scene.camera.sensor && image.channels < 3) colours_ = 1;
     const Values values(std::move(image), scene.camera.sensor);
-    const double white = values.white();
+    const Camera camera(scene.camera);
     std::vector<std::optional<Cell>> found(static_cast<std::size_t>(width_) *
                                            static_cast<std::size_t>(height_));
-    const auto edge = [](int index, int count, int pixels) {
-        return static_cast<int>(std::lround(static_cast<double>(index) * pixels / count));
-    };
     parallel_for(found.size(), [&](std::size_t index) {
         Cell cell{
-            picture, static_cast<int>(index) % width_, static_cast<int>(index) / width_, {}, {}};
-        const int x0 = edge(cell.x, width_, scene.camera.width),
-                  x1 = edge(cell.x + 1, width_, scene.camera.width),
-                  y0 = edge(cell.y, height_, scene.camera.height),
-                  y1 = edge(cell.y + 1, height_, scene.camera.height);
+            picture, static_cast<int>(index) % width_, static_cast<int>(index) / width_, {}, {}, {},
+            {}};
+        const int x0 = left_ + cell.x * cell_side_, y0 = top_ + cell.y * cell_side_;
+        const PixelWindow window{x0, y0, x0 + cell_side_, y0 + cell_side_};
+        if (!is_comparable(camera, values, window, colours_)) return;
+        const int more = std::max(0, (k_least_scatter_side - cell_side_ + 1) / 2);
+        const PixelWindow around =
+            intersection({window.x0 - more, window.y0 - more, window.x1 + more, window.y1 + more},
+                         {0, 0, values.width(), values.height()});
         for (std::size_t k = 0; k < colours_; ++k) {
-            double count = 0, sum = 0, squares = 0, least = 1e300, most = -1e300;
-            for (int y = y0; y < y1; ++y)
-                for (int x = x0; x < x1; ++x)
-                    if (const std::optional<double> value = values.at(x, y, k)) {
-                        if (!(*value < white) || !std::isfinite(*value)) return;
-                        count += 1;
-                        sum += *value;
-                        squares += *value * *value;
-                        least = std::min(least, *value);
-                        most = std::max(most, *value);
-                    }
-            if (count == 0) return;
-            cell.mean[k] = sum / count;
-            double variance = most > least && count > 1
-                                  ? std::max(0.0, (squares - sum * cell.mean[k]) / (count - 1))
-                                  : 0;
+            const Spread spread(values, window, k);
+            if (spread.count == 0) return;
+            cell.mean[k] = spread.mean();
+            if (!sensor_) {
+                cell.scatter[k] = Spread(values, around, k).variance() / spread.count;
+                continue;
+            }
             // Of few pixels the scatter is known badly: what scatters as noise does, is noise.
             constexpr double k_like_noise = 4;
-            const std::optional<double> noise = values.variance(cell.mean[k]);
-            if (noise && variance < k_like_noise * *noise) variance = *noise;
-            cell.error[k] = std::sqrt(variance / count + std::pow(model_error_ * cell.mean[k], 2));
+            const double variance = spread.variance();
+            if (variance < k_like_noise * variance_of(cell.mean[k], *sensor_))
+                cell.noisy_pixels[k] = spread.count;
+            else
+                cell.scatter[k] = variance / spread.count;
         }
         found[index] = cell;
     });
     double brightest = 0;
     for (const std::optional<Cell>& cell : found)
         if (cell) brightest = std::max(brightest, *std::ranges::max_element(cell->mean));
-    for (std::optional<Cell>& cell : found) {
-        if (!cell || !(brightest > 0)) continue;
-        // Where all is dark, nothing is known to better than what the bright parts are known to.
-        for (double& error : cell->error) error = std::hypot(error, 0.1 * model_error_ * brightest);
-        cells_.push_back(*cell);
+    brightest_.push_back(brightest);
+    for (const std::optional<Cell>& cell : found)
+        if (cell && brightest > 0) cells_.push_back(*cell);
+}
+
+void PictureResiduals::weigh(Weights by) {
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+        Cell& cell = cells_[i];
+        for (std::size_t k = 0; k < colours_; ++k) {
+            const double value = by == Weights::by_observation || light_.empty()
+                                     ? cell.mean[k]
+                                     : seen(i, light_[i][k]).value;
+            const double variance = cell.noisy_pixels[k] > 0
+                                        ? variance_of(value, *sensor_) / cell.noisy_pixels[k]
+                                        : cell.scatter[k];
+            // Where all is dark, nothing is known to better than what the bright parts are known
+            // to.
+            cell.error[k] = std::hypot(std::sqrt(variance), model_error_ * value,
+                                       0.1 * model_error_ * brightest_[cell.picture]);
+        }
     }
+}
+
+void PictureResiduals::show_cells(SceneDesc& scene, int side) const {
+    CameraDesc& camera = scene.camera;
+    camera.intrinsics.cx -= left_;
+    camera.intrinsics.cy -= top_;
+    camera.width = cell_side_ * width_;
+    camera.height = cell_side_ * height_;
+    resize_image(camera, side * width_, side * height_);
+    // Of a power of two the samples of a pixel have their middle in the pixel's (PixelSampling).
+    constexpr unsigned k_fewest = 4;
+    if (!integrator_kind(scene.render.integrator).traces_paths)
+        scene.render.samples = static_cast<int>(
+            std::bit_ceil(std::max(k_fewest, static_cast<unsigned>(samples_of(scene.render)))));
 }
 
 PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> values,
@@ -270,8 +365,7 @@ PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> v
         throw_if_stopped();
         const ImageScene whole = scene_of_picture(scene, files_[picture]);
         Renderer& renderer = renderers_[picture];
-        renderer.set_scene(whole.with(
-            [&](SceneDesc& desc) { resize_image(desc.camera, side * width_, side * height_); }));
+        renderer.set_scene(whole.with([&](SceneDesc& desc) { show_cells(desc, side); }));
         RenderOptions options;
         options.layers = "total";
         const Film& film = renderer.render(options);
@@ -457,7 +551,8 @@ std::vector<ResidualGroup> PictureResiduals::groups() const {
 
 Observations::Place PictureResiduals::place(std::size_t group) const {
     const Cell& cell = cells_[group];
-    return {cell.picture, {(cell.x + 0.5) * cell_side_, (cell.y + 0.5) * cell_side_}};
+    return {cell.picture,
+            {left_ + (cell.x + 0.5) * cell_side_, top_ + (cell.y + 0.5) * cell_side_}};
 }
 
 double PictureResiduals::clustering(std::span<const double> residuals,

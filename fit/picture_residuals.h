@@ -34,21 +34,26 @@ struct ObservedPicture {
 std::vector<ObservedPicture> pictures_called(const std::filesystem::path& name);
 
 /// How far the light that a scene predicts is from that of pictures. Each picture is divided into
-/// cells; a group is the mean over a cell in each of its colours, and the residual is in units of
-/// what the mean may be off by: from the scatter of the cell's pixels, which is great where
-/// something has an edge (or, if it is no more than that, the noise that the scene's sensor has),
-/// and a thousandth of the light.
+/// cells, squares of whole pixels; a group is the mean over a cell in each of its colours, and the
+/// residual is in units of what the mean may be off by: from the scatter of the cell's pixels,
+/// which is great where something has an edge (or, if it is no more than that, the noise that the
+/// scene's sensor has), and a thousandth of the light.
+///
+/// What is predicted of a cell is the light over just its pixels: a cell is a pixel, or some, of an
+/// image of coarser ones. Of a mosaic its side is odd, so that the pixels of every colour have
+/// their middle in the cell's.
 ///
 /// Scenes with a sensor predict its numbers as they are stored raw, from which the sensor's black
 /// level, gain, mosaic and efficiencies follow; other scenes red, green and blue, of pictures with
-/// linear values as they are, of others by the sRGB curve. Cells in which a pixel is white are left
-/// out. Unknown exposures multiply the light of each picture, and an unknown response is the power
-/// to which that is raised: 1 where a camera's curve is sRGB's.
+/// linear values as they are, of others by the sRGB curve. Cells in which a pixel is white, masked
+/// by its alpha or without a ray into the water are left out. Unknown exposures multiply the light
+/// of each picture, and an unknown response is the power to which that is raised: 1 where a
+/// camera's curve is sRGB's.
 class PictureResiduals final : public Observations {
   public:
-    /// `cells`: across a picture's width. `unknowns` outlive it. Throws InputError for pictures
-    /// that are not of the scene's resolution or have nothing to see, and for a sensor whose image
-    /// is developed; and throws as read_image and Renderer.
+    /// `cells`: about how many lie across a picture's width. `unknowns` outlive it. Throws
+    /// InputError for pictures that are not of the scene's resolution or have nothing to see, and
+    /// for a sensor whose image is developed; and throws as read_image and Renderer.
     PictureResiduals(const SceneUnknowns& unknowns, std::vector<ObservedPicture> files, int cells);
 
     bool prepare(std::span<const double> shared, bool with_derivatives) override;
@@ -63,6 +68,7 @@ class PictureResiduals final : public Observations {
     const char* unit() const override { return "times the scatter"; }
     double of_group(double rms) const override { return rms; }
     bool is_rough() const override { return has_all_light_; }
+    void weigh(Weights by) override;
     /// Of the means over blocks of cells, five across a picture: what cells share, such as the
     /// errors of light that is interpolated between nodes.
     double clustering(std::span<const double> residuals,
@@ -91,6 +97,9 @@ class PictureResiduals final : public Observations {
         std::size_t picture = 0;
         int x = 0, y = 0;  // in the divided picture
         Colours mean{}, error{};
+        /// How many pixels scatter by no more than the sensor's noise; or 0, and the variance of
+        /// the mean as the pixels scatter.
+        Colours noisy_pixels{}, scatter{};
     };
     using Prediction = std::vector<Colours>;  // of each cell
 
@@ -100,6 +109,8 @@ class PictureResiduals final : public Observations {
     enum class Light : std::uint8_t { of_the_scene, coarsely, scattered_once };
 
     void read(std::size_t picture, const SceneDesc& scene);
+    /// Makes the camera's image one of the cells, each of side x side pixels.
+    void show_cells(SceneDesc& scene, int side) const;
     Prediction predict(std::span<const double> values, Light light);
     void group_unknowns(std::span<const double> shared);
     void take_derivatives(std::span<const double> shared);
@@ -115,9 +126,12 @@ class PictureResiduals final : public Observations {
     std::vector<ObservedPicture> files_;
     std::vector<std::string> names_;
     int width_ = 0, height_ = 0;  // of pictures, in cells
-    double cell_side_ = 1;        // [pixels]
+    int cell_side_ = 1;           // [pixels]
+    int left_ = 0, top_ = 0;      // pixels before the first cell
     std::size_t colours_ = 3;
+    std::optional<SensorDesc> sensor_;  // as the fit begins
     std::vector<Cell> cells_;
+    std::vector<double> brightest_;   // mean of a cell, per picture
     std::deque<Renderer> renderers_;  // one per picture, which keeps what does not change
     bool has_all_light_ = false;
     int pixels_per_side_ = 1;  // rendered of a cell

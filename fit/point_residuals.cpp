@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -33,6 +34,12 @@ CameraDesc camera_itself(const SceneDesc& scene, SeenThrough through) {
     if (through == SeenThrough::air && camera.port)
         std::visit([](auto& port) { port.n_water = port.n_air; }, *camera.port);
     return camera;
+}
+
+std::vector<double> shared_of(const FitResult& result) {
+    std::vector<double> shared;
+    for (const FoundValue& found : result.values) shared.push_back(found.value);
+    return shared;
 }
 
 Point3 moved(const Pose& pose, const ResidualFunction::Block& by, const Vector3& from_centre) {
@@ -95,10 +102,14 @@ PointResiduals::PointResiduals(const SceneUnknowns& unknowns, PointTable seen)
     }
     for (std::size_t i = 0; i < sums.size(); ++i)
         centres_.push_back(at_origin_plus(sums[i] / counts[i]));
+    cameras_ = cameras_of(start());
+    for (std::size_t i = 0; i < seen_.images.size(); ++i) poses_.push_back(start_pose(i));
+}
+
+std::vector<double> PointResiduals::start() const {
     std::vector<double> start;
     for (const SceneUnknown& unknown : unknowns_.all()) start.push_back(unknown.start);
-    cameras_ = cameras_of(start);
-    for (std::size_t i = 0; i < seen_.images.size(); ++i) poses_.push_back(start_pose(i));
+    return start;
 }
 
 PointResiduals::Cameras PointResiduals::cameras_of(std::span<const double> values) const {
@@ -140,10 +151,20 @@ Pose PointResiduals::start_pose(std::size_t image) const {
             });
         if (is_visible) return pose;
     }
+    const CameraDesc camera = unknowns_.scene(start()).camera;
+    bool is_swapped = false, is_within = true;
+    for (const PhotographedPoint& point : seen_.points) {
+        is_swapped = is_swapped || point.seen.x > camera.width || point.seen.y > camera.height;
+        is_within = is_within && point.seen.y <= camera.width && point.seen.x <= camera.height;
+    }
     throw InputError(fmt::format(
         "image {}: no pose was found from which the scene's camera sees its points where they "
-        "are; check the columns, and that the scene's lens and port are about right",
-        printable(seen_.images[image])));
+        "are; {}",
+        printable(seen_.images[image]),
+        is_swapped && is_within
+            ? "some lie beyond the image's edge: are u and v swapped? u counts to the right, v down"
+            : "check the columns (x, y and z are metres, u counts to the right, v down), and that "
+              "the scene's lens and port are about right"));
 }
 
 bool PointResiduals::prepare(std::span<const double> shared, bool with_derivatives) {
@@ -227,6 +248,114 @@ std::vector<Affine> PointResiduals::poses(std::span<const Block> blocks) const {
         found.push_back(Affine(axes, origin).inverse());
     }
     return found;
+}
+
+std::vector<FoundPose> PointResiduals::found_poses(const FitResult& result) const {
+    constexpr double k_step = 1e-6;  // [m] and [rad]
+    std::vector<FoundPose> found;
+    for (const Affine& pose : poses(result.blocks)) found.push_back({pose});
+    // By the blocks, of all images at once: each moves its own.
+    std::vector<std::array<Vector3, k_block_size>> positions(found.size()), turns(found.size());
+    for (std::size_t k = 0; k < k_block_size; ++k) {
+        std::vector<Block> back = result.blocks, ahead = back;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            back[i][k] -= k_step;
+            ahead[i][k] += k_step;
+        }
+        const std::vector<Affine> before = poses(back), after = poses(ahead);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            positions[i][k] = (after[i].offset() - before[i].offset()) / (2 * k_step);
+            turns[i][k] = rotation_vector(
+                              rotation_of(glm::transpose(before[i].linear()) * after[i].linear())) /
+                          (2 * k_step * k_degree);
+        }
+    }
+    for (std::size_t i = 0; i < found.size(); ++i)
+        for (int axis = 0; axis < 3; ++axis) {
+            double position = 0, turn = 0;
+            for (std::size_t j = 0; j < k_block_size; ++j)
+                for (std::size_t k = 0; k < k_block_size; ++k) {
+                    const double covariance = result.block_covariances[i][j * k_block_size + k];
+                    position += positions[i][j][axis] * covariance * positions[i][k][axis];
+                    turn += turns[i][j][axis] * covariance * turns[i][k][axis];
+                }
+            // Of what is not determined infinities cancel to no number.
+            const auto error = [](double variance) {
+                return variance >= 0 ? std::sqrt(variance)
+                                     : std::numeric_limits<double>::infinity();
+            };
+            found[i].position_error[axis] = error(position);
+            found[i].turn_error[axis] = error(turn);
+        }
+    return found;
+}
+
+std::vector<std::string> PointResiduals::questions(const FitResult& result,
+                                                   const FitOptions& options) const {
+    std::vector<std::string> all;
+    double extent = 0;
+    for (const PhotographedPoint& point : seen_.points)
+        extent = std::max(extent, 2 * glm::length(point.point - centres_[point.image]));
+    // Boards are between a hand and a room large.
+    constexpr double k_too_small = 0.002, k_too_large = 10;
+    if (extent > k_too_large)
+        all.push_back(
+            fmt::format("The points of an image are up to {:.3g} m apart: are they in millimetres "
+                        "or centimetres? Give metres, as x, y and z or as the side of a square.",
+                        extent));
+    if (extent < k_too_small)
+        all.push_back(fmt::format(
+            "The points of an image are at most {:.3g} m apart: is that what was meant? Give "
+            "metres, as x, y and z or as the side of a square.",
+            extent));
+    // What is seen a few pixels off is as good as a board and a lens are.
+    constexpr double k_good = 2;
+    const auto outliers = static_cast<double>(std::ranges::count(result.outliers, true));
+    constexpr double k_many = 0.3;
+    if (of_group(result.rms) < k_good &&
+        outliers < k_many * static_cast<double>(result.outliers.size()))
+        return all;
+    const CameraDesc camera = unknowns_.scene(shared_of(result)).camera;
+    const double width = camera.width, height = camera.height;
+    struct Reading {
+        const char* text;
+        ImagePoint (*read)(const ImagePoint& seen, double width, double height);
+    };
+    constexpr std::array k_readings{
+        Reading{"are u and v swapped? u counts to the right, v down",
+                [](const ImagePoint& p, double, double) {
+                    return ImagePoint{p.y, p.x};
+                }},
+        Reading{"does v count upwards? It counts down from the upper edge",
+                [](const ImagePoint& p, double, double h) {
+                    return ImagePoint{p.x, h - p.y};
+                }},
+        Reading{"does u count to the left? It counts to the right from the left edge",
+                [](const ImagePoint& p, double w, double) {
+                    return ImagePoint{w - p.x, p.y};
+                }},
+    };
+    for (const Reading& reading : k_readings) {
+        PointTable other = seen_;
+        for (PhotographedPoint& point : other.points)
+            point.seen = reading.read(point.seen, width, height);
+        try {
+            PointResiduals read_so(unknowns_, std::move(other));
+            FitOptions quietly = options;
+            quietly.progress = {};
+            quietly.starts = 1;
+            const FitResult found = robust_fit(read_so, unknowns_, quietly);
+            constexpr double k_far_better = 0.2;
+            if (found.rms_with_outliers < k_far_better * result.rms_with_outliers)
+                all.push_back(
+                    fmt::format("The RMS of all points is {:.3g} px, and would be {:.3g}: {}.",
+                                of_group(result.rms_with_outliers),
+                                of_group(found.rms_with_outliers), reading.text));
+        } catch (const InputError&) {
+            continue;  // it is not to be read like that
+        }
+    }
+    return all;
 }
 
 std::vector<ResidualGroup> PointResiduals::groups() const {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,13 @@ struct PointTable {
     std::vector<PhotographedPoint> points;
 };
 
+/// Where a camera was found in the axes of an image's points, with standard errors.
+struct FoundPose {
+    Affine world_from_camera;
+    Vector3 position_error{};  // along these axes [m]
+    Vector3 turn_error{};      // about the camera's own axes [degrees]
+};
+
 /// Reads a table with the columns image, x, y, z, u, v and perhaps medium (water, air, bare).
 /// Throws InputError for other tables, for points that are not finite, and for images with fewer
 /// than four.
@@ -58,6 +66,13 @@ class PointResiduals final : public Observations {
     /// blocks.
     std::vector<Affine> poses(std::span<const Block> blocks) const;
 
+    /// The same with their standard errors.
+    std::vector<FoundPose> found_poses(const FitResult& result) const;
+
+    /// What the author of the table may have meant by it, where it looks odd: questions, each a
+    /// sentence with the mend. `options`: of the fit that came to `result`.
+    std::vector<std::string> questions(const FitResult& result, const FitOptions& options) const;
+
     const std::vector<std::string>& images() const override { return seen_.images; }
     Place place(std::size_t group) const override {
         return {seen_.points[group].image, seen_.points[group].seen};
@@ -70,6 +85,7 @@ class PointResiduals final : public Observations {
   private:
     /// A camera in what it was in, as far as the points need it.
     using Cameras = std::array<std::optional<Camera>, 3>;
+    std::vector<double> start() const;  // the unknowns'
     Cameras cameras_of(std::span<const double> values) const;
     Pose start_pose(std::size_t image) const;
 

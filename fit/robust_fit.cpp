@@ -45,6 +45,14 @@ std::vector<double> residuals_of(Observations& observations, const LeastSquaresP
     return all;
 }
 
+/// The same, with weights from what the unknowns predict.
+std::vector<double> weighed_residuals(Observations& observations,
+                                      const LeastSquaresProblem& problem) {
+    residuals_of(observations, problem);  // makes it what was predicted last
+    observations.weigh(Observations::Weights::by_prediction);
+    return residuals_of(observations, problem);
+}
+
 /// The deviation of normal numbers of whose magnitudes this is the median.
 double robust_deviation(std::span<const double> residuals) {
     std::vector<double> magnitudes;
@@ -95,6 +103,7 @@ class Rounds {
 
     LeastSquaresOutcome solve() {
         observations_.set_deviation(1);
+        observations_.weigh(Observations::Weights::by_observation);
         // From far away, squares lead there; what is far off afterwards are outliers.
         LeastSquaresOutcome outcome = round("squares", k_infinity, k_on_the_way);
         double deviation = deviation_now();
@@ -129,7 +138,7 @@ class Rounds {
         iterations_ += outcome.iterations;
         return outcome;
     }
-    double deviation_now() { return robust_deviation(residuals_of(observations_, problem_)); }
+    double deviation_now() { return robust_deviation(weighed_residuals(observations_, problem_)); }
 
     Observations& observations_;
     LeastSquaresProblem& problem_;
@@ -142,15 +151,14 @@ class Rounds {
 void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
     const std::size_t n = result.values.size();
     if (n == 0) return;
-    // In scales of the unknowns, so that its eigenvalues compare.
+    // In sizes of the unknowns, so that its eigenvalues compare.
     std::vector<double> information = outcome.information;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j) {
-            information[i * n + j] *=
-                result.values[i].unknown.scale * result.values[j].unknown.scale;
+            information[i * n + j] *= result.values[i].size * result.values[j].size;
             if (i == j)
                 information[i * n + j] +=
-                    std::pow(result.values[i].unknown.scale / result.values[i].prior_deviation, 2);
+                    std::pow(result.values[i].size / result.values[i].prior_deviation, 2);
         }
     const EigenSystem system = symmetric_eigen_system(information);
     const double greatest = std::max(system.values.back(), 0.0);
@@ -187,12 +195,124 @@ void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
     result.correlations.assign(n * n, 0.0);
     for (std::size_t i = 0; i < n; ++i) {
         FoundValue& found = result.values[i];
-        found.error =
-            is_free[i] ? k_infinity : std::sqrt(covariance[i * n + i]) * found.unknown.scale;
+        found.error = is_free[i] ? k_infinity : std::sqrt(covariance[i * n + i]) * found.size;
         for (std::size_t j = 0; j < n; ++j) {
             const double both = std::sqrt(covariance[i * n + i] * covariance[j * n + j]);
             if (both > 0) result.correlations[i * n + j] = covariance[i * n + j] / both;
         }
+    }
+}
+
+/// The list that a number of the scene is in, by its path; of others, their own names.
+std::string list_of(const SceneUnknown& unknown) {
+    return unknown.name.ends_with(']') ? unknown.name.substr(0, unknown.name.rfind('['))
+                                       : unknown.name;
+}
+
+/// What an error of each is to be held against: how great what was found is, wherever the fit
+/// began. A tilt matters by its degrees, and of what is found next to 0, such as how far a port is
+/// off its middle, a centimetre does, or what mattered at the start if that is less.
+void find_sizes(std::vector<FoundValue>& values) {
+    constexpr double k_little = 0.01;  // as in SceneUnknowns: a centimetre, 1 % per metre
+    for (FoundValue& found : values) {
+        found.size = found.unknown.scale;
+        if (!found.unknown.unit.empty()) continue;
+        found.size = std::min(found.unknown.scale, k_little);
+        for (const FoundValue& other : values)
+            if (list_of(other.unknown) == list_of(found.unknown))
+                found.size = std::max(found.size, std::abs(other.value));
+    }
+}
+
+constexpr std::size_t k_block = ResidualFunction::k_block_size;
+
+/// The inverse of a symmetric positive matrix; infinite if it is none.
+BlockCovariance inverse_of(BlockCovariance matrix) {
+    BlockCovariance inverse{};
+    for (std::size_t i = 0; i < k_block; ++i) inverse[i * k_block + i] = 1;
+    for (std::size_t pivot = 0; pivot < k_block; ++pivot) {
+        const double value = matrix[pivot * k_block + pivot];
+        if (!(value > 0)) {
+            inverse.fill(k_infinity);
+            return inverse;
+        }
+        for (std::size_t column = 0; column < k_block; ++column) {
+            inverse[pivot * k_block + column] /= value;
+            matrix[pivot * k_block + column] /= value;
+        }
+        for (std::size_t row = 0; row < k_block; ++row) {
+            if (row == pivot) continue;
+            const double share = matrix[row * k_block + pivot];
+            for (std::size_t column = 0; column < k_block; ++column) {
+                inverse[row * k_block + column] -= share * inverse[pivot * k_block + column];
+                matrix[row * k_block + column] -= share * matrix[pivot * k_block + column];
+            }
+        }
+    }
+    return inverse;
+}
+
+/// The covariances of the blocks: what their own observations tell for given unknowns, and the
+/// errors of these, which move the blocks with them.
+void find_block_covariances(Observations& observations, const LeastSquaresProblem& problem,
+                            double variance, FitResult& result) {
+    const std::size_t n = result.values.size(), blocks = problem.blocks.size();
+    if (blocks == 0) return;
+    std::vector<double> shared;
+    for (const FoundValue& found : result.values) shared.push_back(found.value);
+    result.block_covariances.assign(blocks, {});
+    for (BlockCovariance& covariance : result.block_covariances) covariance.fill(k_infinity);
+    if (!observations.prepare(shared, true)) return;
+    std::vector<BlockCovariance> own(blocks, BlockCovariance{});
+    std::vector<std::vector<double>> both(blocks, std::vector<double>(k_block * n, 0.0));
+    for (std::size_t i = 0; i < problem.groups.size(); ++i) {
+        const ResidualGroup& group = problem.groups[i];
+        if (group.is_left_out || group.block < 0) continue;
+        const auto block = static_cast<std::size_t>(group.block);
+        const auto count = static_cast<std::size_t>(group.residuals);
+        std::vector<double> residuals(count), by_shared(count * n), by_block(count * k_block);
+        if (!observations.evaluate(i, &problem.blocks[block], residuals.data(), by_shared.data(),
+                                   by_block.data()))
+            continue;
+        for (std::size_t k = 0; k < count; ++k)
+            for (std::size_t row = 0; row < k_block; ++row) {
+                const double derivative = by_block[k * k_block + row];
+                for (std::size_t column = 0; column < k_block; ++column)
+                    own[block][row * k_block + column] +=
+                        derivative * by_block[k * k_block + column];
+                for (std::size_t column = 0; column < n; ++column)
+                    both[block][row * n + column] += derivative * by_shared[k * n + column];
+            }
+    }
+    for (std::size_t block = 0; block < blocks; ++block) {
+        const BlockCovariance inverse = inverse_of(own[block]);
+        if (!std::isfinite(inverse[0])) continue;
+        // By how much the block moves with each unknown's error; what is not determined moves it
+        // anywhere.
+        std::vector<double> moved(k_block * n, 0.0);
+        bool is_determined = true;
+        for (std::size_t row = 0; row < k_block; ++row)
+            for (std::size_t column = 0; column < n; ++column) {
+                double sum = 0;
+                for (std::size_t k = 0; k < k_block; ++k)
+                    sum += inverse[row * k_block + k] * both[block][k * n + column];
+                const double error = result.values[column].error;
+                if (!std::isfinite(error))
+                    is_determined =
+                        is_determined && std::abs(sum) * result.values[column].size < 1e-9;
+                else
+                    moved[row * n + column] = sum * error;
+            }
+        if (!is_determined) continue;
+        for (std::size_t row = 0; row < k_block; ++row)
+            for (std::size_t column = 0; column < k_block; ++column) {
+                double sum = variance * inverse[row * k_block + column];
+                for (std::size_t i = 0; i < n; ++i)
+                    for (std::size_t j = 0; j < n; ++j)
+                        sum += moved[row * n + i] * result.correlations[i * n + j] *
+                               moved[column * n + j];
+                result.block_covariances[block][row * k_block + column] = sum;
+            }
     }
 }
 
@@ -266,7 +386,7 @@ FitResult robust_fit(Observations& observations, const SceneUnknowns& unknowns,
     }
     observations.set_deviation(deviation);
     result.converged = outcome.converged;
-    result.residuals = residuals_of(observations, *best);
+    result.residuals = weighed_residuals(observations, *best);
     result.blocks = best->blocks;
     for (const ResidualGroup& group : best->groups) result.outliers.push_back(group.is_left_out);
     const std::vector<double> kept = without_outliers(result.residuals, best->groups);
@@ -281,16 +401,21 @@ FitResult robust_fit(Observations& observations, const SceneUnknowns& unknowns,
         const LeastSquaresProblem::Unknown& shared = best->shared[i];
         FoundValue found{unknowns.all()[i], shared.value};
         found.prior_deviation = shared.prior_deviation;
-        const double little = 1e-6 * found.unknown.scale;
-        found.is_at_bound =
-            shared.value < shared.lower + little || shared.value > shared.upper - little;
         result.values.push_back(std::move(found));
+    }
+    find_sizes(result.values);
+    for (std::size_t i = 0; i < best->shared.size(); ++i) {
+        const LeastSquaresProblem::Unknown& shared = best->shared[i];
+        const double little = 1e-6 * result.values[i].size;
+        result.values[i].is_at_bound =
+            shared.value < shared.lower + little || shared.value > shared.upper - little;
     }
     // The information is in units of the deviation that was assumed; priors are in their own.
     result.clustering = observations.clustering(result.residuals, result.outliers);
     const double ratio = deviation / result.deviation;
     for (double& entry : outcome.information) entry *= ratio * ratio / result.clustering;
     find_errors(outcome, result);
+    find_block_covariances(observations, *best, 1 / (ratio * ratio), result);
     return result;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -33,6 +34,13 @@ class Observations : public ResidualFunction {
     virtual const char* noun() const = 0;
     virtual const char* unit() const = 0;
     virtual double of_group(double rms) const = 0;
+
+    /// What the weights of observations follow: noise that grows with what is seen, as that of
+    /// light does, makes those that chance to be low seem the better known, and what is found too
+    /// low; what is predicted knows nothing of chance.
+    enum class Weights { by_observation, by_prediction };
+    /// Takes weights from what was observed, or from what was predicted last.
+    virtual void weigh(Weights /*by*/) {}
 
     /// Whether predictions have noise of their own, which changes with the unknowns.
     virtual bool is_rough() const { return false; }
@@ -75,16 +83,21 @@ struct FoundValue {
     double error = 0;            // standard error; infinite if it is not determined
     double prior_deviation = 0;  // infinite: none
     bool is_at_bound = false;
+    /// What errors of it are held against: the greatest of its list as it was found, > 0.
+    double size = 1;
 };
 
 /// Unknowns of which only a combination is determined: moved together in these shares of their
-/// scales, they leave the observations as they are.
+/// sizes, they leave the observations as they are.
 struct FreeDirection {
     std::vector<std::size_t> unknowns;  // most affected first
     std::vector<double> shares;         // likewise, of unit length
-    /// The standard error along it, in scales; infinite: nothing at all is known.
+    /// The standard error along it, in sizes; infinite: nothing at all is known.
     double error = 0;
 };
+
+using BlockCovariance =
+    std::array<double, ResidualFunction::k_block_size * ResidualFunction::k_block_size>;
 
 struct FitResult {
     bool converged = false;
@@ -92,6 +105,9 @@ struct FitResult {
     std::vector<double> correlations;  // n x n
     std::vector<FreeDirection> free_directions;
     std::vector<ResidualFunction::Block> blocks;
+    /// The covariances of each, 6 x 6 row by row, the unknowns' errors included; infinite if they
+    /// are not determined.
+    std::vector<BlockCovariance> block_covariances;
     std::vector<double> residuals;          // of all groups, in the observations' unit
     std::vector<bool> outliers;             // per group
     double rms = 0, rms_with_outliers = 0;  // over residuals, in the observations' unit

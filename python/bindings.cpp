@@ -1,6 +1,7 @@
 #include "python/bindings.h"
 
 #include <exception>
+#include <string_view>
 #include <utility>
 
 #include "core/base/available_memory.h"
@@ -13,7 +14,11 @@ namespace uw {
 namespace {
 
 void raise(const char* name, const std::exception& fault) {
-    PyErr_SetString(py::module_::import("uwvdb.errors").attr(name).ptr(), fault.what());
+    // Files may have names that are no UTF-8.
+    const std::string_view text = fault.what();
+    const auto message = py::reinterpret_steal<py::object>(PyUnicode_DecodeUTF8(
+        text.data(), static_cast<Py_ssize_t>(text.size()), "backslashreplace"));
+    PyErr_SetObject(py::module_::import("uwvdb.errors").attr(name).ptr(), message.ptr());
 }
 
 }  // namespace

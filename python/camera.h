@@ -4,6 +4,7 @@
 
 #include "camera/camera.h"
 #include "core/scene/camera_desc.h"
+#include "python/arguments.h"
 
 namespace uw {
 
@@ -19,3 +20,5 @@ inline CameraObject camera_of(const CameraDesc& desc) {
 }
 
 }  // namespace uw
+
+UWVDB_BOUND_CLASS(uw::CameraObject);

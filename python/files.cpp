@@ -1,5 +1,4 @@
 #include <pybind11/stl.h>
-#include <pybind11/stl/filesystem.h>
 
 #include <filesystem>
 #include <string>
@@ -10,6 +9,7 @@
 #include "media/volumes/loaded_grid.h"
 #include "media/volumes/vdb_header.h"
 #include "media/volumes/vdb_inspect.h"
+#include "python/arguments.h"
 #include "python/bindings.h"
 #include "python/camera.h"
 #include "python/objects.h"
@@ -23,7 +23,8 @@ namespace {
 /// What a file's fault is reported at, beside its name.
 constexpr const char* k_where = "read_vdb";
 
-py::tuple read_vdb(const std::filesystem::path& file, const std::string& name) {
+py::tuple read_vdb(const FileName& file, const Text& wanted) {
+    const std::string& name = wanted;
     GridArray array;
     VdbHeader header;
     {
@@ -72,7 +73,7 @@ py::dict grid_of(const GridInspection& grid) {
     return dict;
 }
 
-py::dict inspect(const std::filesystem::path& file) {
+py::dict inspect(const FileName& file) {
     VdbInspection inspection;
     {
         const py::gil_scoped_release release;
@@ -89,7 +90,7 @@ py::dict inspect(const std::filesystem::path& file) {
 }
 
 /// The camera of a file, as the section of a scene that describes it and by itself.
-py::dict load_calibration(const std::filesystem::path& file, const std::string& camera) {
+py::dict load_calibration(const FileName& file, const Text& camera) {
     const Calibration calibration = read_calibration(file, camera);
     const std::string text = write_calibration(CalibrationFormat::scene, calibration.desc);
     py::dict dict;

@@ -16,6 +16,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "python/arguments.h"
 
 namespace py = pybind11;
 
@@ -155,6 +156,10 @@ ConfigNode scalar(std::string text, bool quoted) {
     return node;
 }
 
+std::string path_text(const py::object& path) {
+    return py::isinstance<py::str>(path) ? text_of(path) : path.cast<std::string>();
+}
+
 ConfigNode number(const py::object& value) {
     return scalar(py::repr(value).cast<std::string>(), false);
 }
@@ -215,14 +220,14 @@ class NodeMaker {
         if (object.is_none()) return {};
         if (py::isinstance<py::bool_>(object))
             return scalar(object.cast<bool>() ? "true" : "false", false);
-        if (py::isinstance<py::str>(object)) return scalar(object.cast<std::string>(), true);
+        if (py::isinstance<py::str>(object)) return scalar(text_of(object), true);
         // For types that are not Python's own, such as NumPy's float64, repr() names the type, too.
         if (py::isinstance<py::int_>(object))
             return number(py::reinterpret_steal<py::object>(PyNumber_Long(object.ptr())));
         if (py::isinstance<py::float_>(object)) return number(py::float_(object.cast<double>()));
         const bool is_dict = py::isinstance<py::dict>(object);
         if (!is_dict && py::hasattr(object, "__fspath__"))
-            return scalar(object.attr("__fspath__")().cast<std::string>(), true);
+            return scalar(path_text(object.attr("__fspath__")()), true);
         if (depth_ >= limits_.depth)
             refuse(
                 fmt::format("nested more than {} levels deep; give lists and dicts that do not "
@@ -243,7 +248,7 @@ class NodeMaker {
             if (!py::isinstance<py::str>(key))
                 throw py::type_error("keys of a scene are str, found " +
                                      py::repr(key).cast<std::string>());
-            auto name = key.cast<std::string>();
+            auto name = text_of(key);
             ConfigNode made = make_at((path_.empty() ? "" : ".") + name, value);
             node.entries.push_back({std::move(name), {}, std::move(made)});
         }

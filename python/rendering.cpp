@@ -88,7 +88,8 @@ py::array_t<float> pixels(const py::object& self) {
 }
 
 /// A derivative (rows, columns, bands), a view that keeps the image alive.
-py::array_t<float> derivative(const py::object& self, const std::string& name) {
+py::array_t<float> derivative(const py::object& self, const Text& wanted) {
+    const std::string& name = wanted;
     const auto& image = self.cast<ImageObject&>();
     const auto found = image.derivatives.find(name);
     if (found == image.derivatives.end())
@@ -136,8 +137,9 @@ py::dict report(const ImageObject& image) {
     return dict;
 }
 
-void save_image(const ImageObject& image, const std::filesystem::path& file,
-                std::optional<double> exposure, const std::string& precision) {
+void save_image(const ImageObject& image, const FileName& file, std::optional<double> exposure,
+                const Text& wanted) {
+    const std::string& precision = wanted;
     ExrOptions options;
     const auto* const found = std::ranges::find(k_precision_names, precision,
                                                 [](const auto& word) { return word.first; });
@@ -198,7 +200,7 @@ py::tuple image_state(const py::object& self) {
     const auto& image = self.cast<ImageObject&>();
     py::dict derivatives;
     for (const auto& [name, values] : image.derivatives)
-        derivatives[py::str(name)] = derivative(self, name);
+        derivatives[py::str(name)] = derivative(self, Text{name});
     return py::make_tuple(image.film.width(), image.film.height(), window(image),
                           image.film.channel_names(), pixels(self), image.metadata,
                           report_state(image.report), image.bands_nm, image.objects,
@@ -604,6 +606,12 @@ class RendererObject : public RunClient {
 };
 
 }  // namespace
+
+}  // namespace uw
+
+UWVDB_BOUND_CLASS(uw::RendererObject);
+
+namespace uw {
 
 void bind_renderer(py::module_& module) {
     module.def("mean_numbers", mean_numbers, py::arg("scene"), py::arg("settings"),

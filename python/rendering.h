@@ -9,6 +9,7 @@
 #include "core/image/exr_file.h"
 #include "core/image/film.h"
 #include "core/image/pixel_image.h"
+#include "python/arguments.h"
 #include "render/renderer.h"
 
 namespace uw {
@@ -31,3 +32,5 @@ void save(const ImageObject& image, const std::filesystem::path& file,
           std::optional<double> exposure, const ExrOptions& options);
 
 }  // namespace uw
+
+UWVDB_BOUND_CLASS(uw::ImageObject);

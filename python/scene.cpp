@@ -160,17 +160,20 @@ py::dict variation_values(const SceneObject& scene, int number) {
     return values;
 }
 
-ScenePointer load(const std::filesystem::path& file) {
+ScenePointer load(const FileName& name) {
+    const std::filesystem::path& file = name;
     return std::make_unique<SceneObject>(read_scene_tree(file, {}), file);
 }
 
-ScenePointer parse(const std::string& text, const std::filesystem::path& file) {
-    return std::make_unique<SceneObject>(scene_tree(text, file), file);
+ScenePointer parse(const Text& text, const FileName& file) {
+    return std::make_unique<SceneObject>(scene_tree(text.value, file), file);
 }
 
-ScenePointer of_sections(const py::dict& sections, const std::filesystem::path& file) {
-    ConfigNode tree = node_of(sections, printable(file.string(), k_longest_file));
-    set_origin(tree, file.string());
+ScenePointer of_sections(const py::dict& sections, const FileName& name) {
+    const std::filesystem::path& file = name;
+    const std::string origin = printable(file.string(), k_longest_file);
+    ConfigNode tree = node_of(sections, origin);
+    set_origin(tree, origin);
     return std::make_unique<SceneObject>(std::move(tree), file);
 }
 
@@ -180,14 +183,15 @@ void set(SceneObject& scene, const py::dict& changes) {
         if (!py::isinstance<py::str>(path))
             throw py::type_error("paths of a scene are str, found " +
                                  py::repr(path).cast<std::string>());
-        auto name = path.cast<std::string>();
+        auto name = text_of(path);
         ConfigNode node = node_of(value, printable(name, k_longest_origin) + " = ...", name);
         nodes.emplace_back(std::move(name), std::move(node));
     }
     scene.set(nodes);
 }
 
-py::object get(const SceneObject& scene, const std::string& path) {
+py::object get(const SceneObject& scene, const Text& wanted) {
+    const std::string& path = wanted;
     const ConfigNode* const node = path.empty() ? &scene.tree() : find_value(scene.tree(), path);
     if (node == nullptr) throw py::key_error(path + ": is not in the scene");
     return object_of(*node);
@@ -214,17 +218,18 @@ std::shared_ptr<const LoadedGrid> grid_of(const FloatArray& array, const Affine&
     return grid;
 }
 
-void add_volume(SceneObject& scene, const std::string& name, const FloatArray& array,
-                const DoubleRows& place, const py::dict& entry, const std::string& where) {
+void add_volume(SceneObject& scene, const Text& name, const FloatArray& array,
+                const DoubleRows& place, const py::dict& entry, const Text& where) {
     ConfigNode node = node_of(entry, where);
     set_origin(node, where);
     SceneArrays arrays;
-    arrays.grids[name] = grid_of(array, affine_of(place), name, where);
+    arrays.grids[name.value] = grid_of(array, affine_of(place), name, where);
     scene.append("volumes", std::move(node), std::move(arrays));
 }
 
-void set_array(SceneObject& scene, const std::string& name, const FloatArray& array,
-               const std::string& where) {
+void set_array(SceneObject& scene, const Text& wanted, const FloatArray& array,
+               const Text& caller) {
+    const std::string &name = wanted, &where = caller;
     const auto found = scene.arrays().grids.find(name);
     if (found == scene.arrays().grids.end())
         throw UsageError(fmt::format("{}: the scene has no array '{}'", where, printable(name)));
@@ -249,10 +254,11 @@ PixelImage pixels_of(const TextureArray& rgb) {
 }
 
 // `uvs` and `texture`: both, or neither.
-void add_mesh(SceneObject& scene, const std::string& name, const DoubleRows& vertices,
+void add_mesh(SceneObject& scene, const Text& name, const DoubleRows& vertices,
               const Corners& faces, const std::optional<DoubleRows>& uvs,
               const std::optional<TextureArray>& texture, const py::dict& entry,
-              const std::string& where) {
+              const Text& caller) {
+    const std::string& where = caller;
     auto mesh = std::make_shared<TriangleMesh>();
     mesh->positions.assign(vertices.data(), vertices.data() + vertices.size());
     if (uvs && texture) {
@@ -277,12 +283,13 @@ void add_mesh(SceneObject& scene, const std::string& name, const DoubleRows& ver
     ConfigNode node = node_of(entry, where);
     set_origin(node, where);
     SceneArrays arrays;
-    arrays.meshes[name] = std::move(mesh);
+    arrays.meshes[name.value] = std::move(mesh);
     scene.append("geometry", std::move(node), std::move(arrays));
 }
 
-void set_texture(SceneObject& scene, const std::string& name, const TextureArray& texture,
-                 const std::string& where) {
+void set_texture(SceneObject& scene, const Text& wanted, const TextureArray& texture,
+                 const Text& caller) {
+    const std::string &name = wanted, &where = caller;
     const auto found = scene.arrays().meshes.find(name);
     if (found == scene.arrays().meshes.end() || !found->second->materials.front().base_map)
         throw UsageError(
@@ -337,8 +344,12 @@ py::object frames(const SceneObject& scene) {
 }  // namespace
 
 void bind_scene(py::module_& module) {
-    module.def("require_memory", require_memory, py::arg("bytes"), py::arg("what"),
-               py::arg("mend"));
+    module.def(
+        "require_memory",
+        [](double bytes, const Text& what, const Text& mend) {
+            require_memory(bytes, what.value, mend.value);
+        },
+        py::arg("bytes"), py::arg("what"), py::arg("mend"));
     py::class_<SceneObject>(module, "Scene")
         .def_static("load", load, py::arg("file"))
         .def_static("parse", parse, py::arg("text"), py::arg("file"))
@@ -346,10 +357,12 @@ void bind_scene(py::module_& module) {
         .def("set", set, py::arg("changes"))
         .def("get", get, py::arg("path"))
         .def("has",
-             [](const SceneObject& scene, const std::string& path) {
-                 return find_value(scene.tree(), path) != nullptr;
+             [](const SceneObject& scene, const Text& path) {
+                 return find_value(scene.tree(), path.value) != nullptr;
              })
-        .def("remove", &SceneObject::remove, py::arg("path"))
+        .def(
+            "remove", [](SceneObject& scene, const Text& path) { return scene.remove(path); },
+            py::arg("path"))
         .def("add_volume", add_volume)
         .def("set_array", set_array)
         .def("add_mesh", add_mesh)

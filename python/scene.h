@@ -9,6 +9,7 @@
 #include "core/scene/scene_context.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/yaml_document.h"
+#include "python/arguments.h"
 
 namespace uw {
 
@@ -59,3 +60,5 @@ class SceneObject {
 void set_origin(ConfigNode& value, const std::string& origin);
 
 }  // namespace uw
+
+UWVDB_BOUND_CLASS(uw::SceneObject);

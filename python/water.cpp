@@ -7,6 +7,7 @@
 
 #include "core/scene/scene_desc.h"
 #include "media/water/water_model.h"
+#include "python/arguments.h"
 #include "python/bindings.h"
 #include "python/objects.h"
 #include "python/scene.h"
@@ -23,6 +24,16 @@ struct WaterObject {
     ConfigNode tree;                                // with its section `water` alone
     std::shared_ptr<const SceneObject> scene = {};  // instead of it
 };
+
+}  // namespace
+
+}  // namespace uw
+
+UWVDB_BOUND_CLASS(uw::WaterObject);
+
+namespace uw {
+
+namespace {
 
 WaterObject of_tree(ConfigNode tree) {
     WaterModel model = build_water_model(water_of_tree(tree), {});

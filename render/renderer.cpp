@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "core/base/error.h"
@@ -30,6 +34,32 @@ void check_window(const PixelWindow& window, const CameraDesc& camera) {
         throw UsageError(fmt::format("{},{},{},{}: not a window of the image of {} x {} pixels",
                                      window.x0, window.y0, window.x1, window.y1, camera.width,
                                      camera.height));
+}
+
+/// What to say of an image in which no pixel of the sensor tells anything.
+std::optional<std::string> saturation_warning(const CameraDesc& camera, const LayerPlan& plan,
+                                              Film& film) {
+    if (!camera.sensor || !plan.has(Layer::sensor)) return std::nullopt;
+    const SensorDesc& sensor = *camera.sensor;
+    double least = sensor.white_level();
+    if (sensor.full_well) {
+        // The number of a full well scatters by what reading it adds, and is rounded.
+        constexpr double k_deviations = 5, k_rounding = 0.5;
+        const double gain = sensor.system_gain();
+        const double added = gain * std::hypot(sensor.read_noise, sensor.dsnu);
+        const double full = gain * *sensor.full_well + sensor.black_level;
+        least = std::min(least, std::max(full - k_deviations * added - k_rounding,
+                                         0.5 * (full + sensor.black_level)));
+    }
+    const PixelWindow& window = film.window();
+    for (int y = window.y0; y < window.y1; ++y)
+        for (int x = window.x0; x < window.x1; ++x)
+            for (const float number : plan.channels(Layer::sensor, film.pixel(x, y)))
+                if (static_cast<double>(number) < least) return std::nullopt;
+    return fmt::format(
+        "{}: every pixel of the image is saturated, so that it shows nothing; make the exposure "
+        "shorter than {:g} s, or the lamps dimmer",
+        sensor.where, *sensor.exposure);
 }
 
 }  // namespace
@@ -279,6 +309,8 @@ const Film& Renderer::render(const RenderOptions& options) {
     render_film(options, passes);
     warn_of_error(options.paths);
     warn_of_multiple_error();
+    if (const auto warning = saturation_warning(scene_->desc().camera, *plan_, *film_))
+        report_.warnings.push_back(*warning);
     count_work();
     if (film_->window() == window_) return *film_;
     cropped_ = cropped(*film_, window_);

@@ -48,8 +48,8 @@ const char* const k_fit_examples = R"(Examples:
 Finds numbers of a scene, each with its standard error, by robust least squares, and says what the
 observations cannot tell. CORNERS.csv has the columns image, x, y, z, u, v and perhaps medium: the
 points of boards or other rigid things [m], in axes that all points of an image share, and where
-the image shows them [pixels; the image's corner is (0, 0)], in water, in air beyond the same port,
-or bare, without a port. Poses are found with the rest. With --board OpenCV finds the corners of a
+the image shows them [pixels; the image's upper left corner is (0, 0), the first pixel's centre
+(0.5, 0.5), u to the right, v down], in water, in air beyond the same port, or bare, without a port. Poses are found with the rest. With --board OpenCV finds the corners of a
 checkerboard in photographs. Without, pictures are held against the images of the
 scene, frame by frame, cell by cell: raw numbers if its camera has a sensor, else light (OpenEXR) or
 what sRGB makes of it (PNG, JPEG). --target writes a sheet with a board to print, and needs no scene;
@@ -95,7 +95,10 @@ struct FitArguments {
 Options fit_options(FitArguments& a) {
     Options options;
     options.input("SCENE", "", a.scene, "scene file, with values from where to begin");
-    options.input("--points", "CORNERS.csv", a.points, "points, and where images show them");
+    options.input("--points", "CORNERS.csv", a.points,
+                  "points x, y, z [m], and where images show them: u to the right and v down from "
+                  "the corner (0, 0) at the upper left, so that the first pixel's centre is "
+                  "(0.5, 0.5); OpenCV's positions are these less 0.5");
     options.input("--images", "PICTURE", a.images,
                   "photographs of the scene; %04d is the frame's number");
     options.input("--poses", "MODEL", a.poses,
@@ -107,11 +110,12 @@ Options fit_options(FitArguments& a) {
         "the photographs show a checkerboard with so many inner corners, whose squares have this "
         "side [m]: its corners are what is observed");
     options.output("--corners", "FILE.csv", a.corners, "write the corners found with --board");
-    options.output("--found-poses", "POSES.json", a.found_poses,
-                   "write where the camera was in each picture, in the board's axes, as --poses "
-                   "reads it");
+    options.output("--found-poses", "POSES.json|POSES.csv", a.found_poses,
+                   "write where the camera was in each picture, in the board's axes, with standard "
+                   "errors, as --poses reads it, or as a table");
     options.integer("--cells", "N", a.cells, 4, 4096,
-                    "cells across a picture whose mean light is compared");
+                    "about so many cells across a picture, whose mean light is compared: squares "
+                    "of whole pixels, of a mosaic an odd number of them, at least three");
     Option& unknown = options.parsed(
         "--unknown", "KEY[,KEY...]",
         [&a](const std::string& text) {
@@ -341,11 +345,19 @@ void run_fit(const FitArguments& a) {
         };
         result = robust_fit(*observations, unknowns, options);
     });
-    const FitReport report(*observations, pictures, result);
+    std::vector<FoundPose> poses;
+    std::vector<std::string> questions;
+    if (points != nullptr) {
+        poses = points->found_poses(result);
+        with_threads(a.threads, [&] { questions = points->questions(result, options); });
+    }
+    const FitReport report(*observations, pictures, result, poses, std::move(questions));
     if (!a.csv.empty()) files.add(a.csv, report.csv());
     if (!a.page.empty()) files.add(a.page, report.page(a.scene.filename().string()));
     if (!a.found_poses.empty())
-        files.add(a.found_poses, transforms_json(points->images(), points->poses(result.blocks)));
+        files.add(a.found_poses, a.found_poses.extension() == ".csv"
+                                     ? pose_csv(points->images(), poses)
+                                     : transforms_json(points->images(), poses));
     if (!a.output.empty()) files.add(a.output, fitted_text(a, unknowns, result));
     files.commit(a.quiet);
     print_output(report.printed(a.json));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
+#include <utility>
 
 #include "cli/html_page.h"
 #include "cli/svg_plot.h"
@@ -30,8 +31,20 @@ std::string to_its_error(double value, double error) {
     return fmt::format("{:.{}f}", value, decimals);
 }
 
-std::string error_text(const FoundValue& found) {
-    return std::isfinite(found.error) ? fmt::format("{:.2g}", found.error) : "not determined";
+std::string error_text(double error) {
+    return std::isfinite(error) ? fmt::format("{:.2g}", error) : "not determined";
+}
+
+/// How well the camera's poses were found, in a sentence.
+std::string pose_line(std::span<const FoundPose> poses) {
+    double metres = 0, degrees = 0;
+    for (const FoundPose& pose : poses) {
+        metres = std::max(metres, glm::length(pose.position_error));
+        degrees = std::max(degrees, glm::length(pose.turn_error));
+    }
+    if (!std::isfinite(metres)) return "The camera's poses are not all determined.";
+    return fmt::format("The camera's poses are known to {:.2g} mm and {:.2g} degrees, or better.",
+                       1e3 * metres, degrees);
 }
 
 std::vector<std::vector<std::string>> value_rows(const FitResult& result) {
@@ -39,7 +52,7 @@ std::vector<std::vector<std::string>> value_rows(const FitResult& result) {
     for (const FoundValue& found : result.values)
         rows.push_back({found.unknown.name, fmt::format("{:.6g}", found.unknown.start),
                         with_unit(to_its_error(found.value, found.error), found.unknown),
-                        error_text(found), found.is_at_bound ? "at its bound" : ""});
+                        error_text(found.error), found.is_at_bound ? "at its bound" : ""});
     return rows;
 }
 
@@ -145,8 +158,15 @@ std::vector<std::string> doubts(const FitResult& result) {
 }
 
 FitReport::FitReport(const Observations& observations, const PictureResiduals* pictures,
-                     const FitResult& result)
-    : observations_(observations), pictures_(pictures), result_(result) {}
+                     const FitResult& result, std::vector<FoundPose> poses,
+                     std::vector<std::string> questions)
+    : observations_(observations),
+      pictures_(pictures),
+      result_(result),
+      poses_(std::move(poses)),
+      doubts_(std::move(questions)) {
+    for (std::string& doubt : doubts(result_)) doubts_.push_back(std::move(doubt));
+}
 
 std::string FitReport::summary_line() const {
     const auto outliers = static_cast<std::size_t>(std::ranges::count(result_.outliers, true));
@@ -194,9 +214,9 @@ std::string FitReport::printed(bool as_json) const {
     for (const std::string& row : aligned_rows(value_rows(result_), 1)) report.say(row);
     report.add("unknowns", values);
     report.set({{"correlations", result_.correlations}});
-    const std::vector<std::string> all_doubts = doubts(result_);
-    for (const std::string& doubt : all_doubts) report.say(doubt);
-    report.set({{"doubts", all_doubts}});
+    if (!poses_.empty()) report.say(pose_line(poses_));
+    for (const std::string& doubt : doubts_) report.say(doubt);
+    report.set({{"doubts", doubts_}});
     std::vector<Report> images;
     const std::vector<ImageSummary> all = summaries(observations_, result_);
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -205,6 +225,12 @@ std::string FitReport::printed(bool as_json) const {
                    {"observations", all[i].groups},
                    {"outliers", all[i].outliers},
                    {"rms", rms_of(all[i], observations_)}});
+        if (!poses_.empty()) {
+            const FoundPose& pose = poses_[i];
+            image.set({{"position", vector_json(pose.world_from_camera.offset())},
+                       {"position_error", vector_json(pose.position_error)},
+                       {"turn_error", vector_json(pose.turn_error)}});
+        }
         images.push_back(std::move(image));
     }
     report.add("images", images);
@@ -332,11 +358,9 @@ std::string FitReport::page(const std::string& scene) const {
             ? fmt::format(", {:.3g} times as large as if neighbours were independent",
                           std::sqrt(result_.clustering))
             : "");
-    const std::vector<std::string> all_doubts = doubts(result_);
     html += "<h2>What these observations cannot tell</h2>\n";
-    if (all_doubts.empty()) html += "<p>Each unknown is determined by itself.</p>\n";
-    for (const std::string& doubt : all_doubts)
-        html += fmt::format("<p>{}</p>\n", xml_escaped(doubt));
+    if (doubts_.empty()) html += "<p>Each unknown is determined by itself.</p>\n";
+    for (const std::string& doubt : doubts_) html += fmt::format("<p>{}</p>\n", xml_escaped(doubt));
     html += "<h2>Residuals</h2>\n";
     html += pictures_ != nullptr ? picture_figures() : plot_html(residual_figure());
     std::vector<std::vector<std::string>> rows{{"image", fmt::format("{}s", observations_.noun()),
@@ -348,6 +372,24 @@ std::string FitReport::page(const std::string& scene) const {
                         std::to_string(images[i].outliers),
                         fmt::format("{:.3f}", rms_of(images[i], observations_))});
     html += table(rows);
+    if (!poses_.empty()) {
+        rows = {{"image", "x [m]", "y [m]", "z [m]", "± x", "± y", "± z", "± turn about x [deg]",
+                 "about y", "about z"}};
+        for (std::size_t i = 0; i < poses_.size(); ++i) {
+            const FoundPose& pose = poses_[i];
+            std::vector<std::string>& row = rows.emplace_back();
+            row.push_back(observations_.images()[i]);
+            for (int axis = 0; axis < 3; ++axis)
+                row.push_back(
+                    to_its_error(pose.world_from_camera.offset()[axis], pose.position_error[axis]));
+            for (const Vector3& errors : {pose.position_error, pose.turn_error})
+                for (int axis = 0; axis < 3; ++axis) row.push_back(error_text(errors[axis]));
+        }
+        html +=
+            "<h2>Where the camera was</h2>\n<p>In the axes of each image's points, with "
+            "standard errors.</p>\n" +
+            table(rows);
+    }
     html += fmt::format("<p>uwvdb {}</p>\n", xml_escaped(program_version()));
     return html_page("Fit of " + scene, html);
 }

@@ -6,6 +6,7 @@
 #include "cli/report.h"
 #include "cli/svg_plot.h"
 #include "fit/picture_residuals.h"
+#include "fit/point_residuals.h"
 #include "fit/robust_fit.h"
 
 namespace uw {
@@ -13,9 +14,11 @@ namespace uw {
 /// What a fit found, for people and programs. Refers to both, which outlive it.
 class FitReport {
   public:
-    /// `pictures`: the observations, if they are of pictures; else null.
+    /// `pictures`: the observations, if they are of pictures; else null. `poses`: of the images,
+    /// if they were found. `questions`: what may have been meant otherwise, in sentences.
     FitReport(const Observations& observations, const PictureResiduals* pictures,
-              const FitResult& result);
+              const FitResult& result, std::vector<FoundPose> poses = {},
+              std::vector<std::string> questions = {});
 
     std::string printed(bool as_json) const;
     /// A self-contained page: values, what cannot be told, residuals.
@@ -32,6 +35,8 @@ class FitReport {
     const Observations& observations_;
     const PictureResiduals* pictures_;
     const FitResult& result_;
+    std::vector<FoundPose> poses_;
+    std::vector<std::string> doubts_;
 };
 
 /// What a fit cannot tell, and what is nearly so, in sentences with the mend.

@@ -5,13 +5,16 @@ the true one. Needs COLMAP and NumPy.
     uwvdb dataset assets/scenes/reconstruction.yaml -o air --format png,colmap
     uwvdb dataset assets/scenes/reconstruction.yaml -o port --format png,colmap \\
         --set 'camera.port={type: flat, distance: 0.05, thickness: 0.02}'
-    examples/datasets/colmap_poses.py air port --plot errors.svg
+    uwvdb dataset assets/scenes/reconstruction.yaml -o fitted --format png,colmap --pinhole-fit \\
+        --set 'camera.port={type: flat, distance: 0.05, thickness: 0.02}'
+    examples/datasets/colmap_poses.py air port fitted --plot errors.svg
 
-COLMAP works beside each set, in air-colmap; what is there is not done again. It gets the camera in air as a
-pinhole, the true one without a port: a port is not among its camera models. Rotation, position and size of its
-world are free, so they are fitted; what is left is the error. The picture shows the error of each image and,
-over the image, by how far features lie from where the reconstruction has them, as means of cells: noise where
-the camera's model is right, a pattern where it is not.
+COLMAP works beside each set, in air-colmap; what is there is not done again. It gets the camera of the set's
+model: that in air, the true one without a port, as a port is not among its camera models; or, of a set that was
+written with --pinhole-fit, the pinhole and lens that were fitted to the rays in the water. Rotation, position
+and size of its world are free, so they are fitted; what is left is the error. The picture shows the error of
+each image and, over the image, by how far features lie from where the reconstruction has them, as means of
+cells: noise where the camera's model is right, a pattern where it is not.
 """
 
 import argparse
@@ -29,12 +32,41 @@ def lines(path):
     return [line for line in path.read_text().splitlines() if not line.startswith("#")]
 
 
-def read_camera(folder):
-    """Width, height and (fx, fy, cx, cy) of the only camera."""
-    cells = lines(folder / "cameras.txt")[0].split()
-    if cells[1] != "PINHOLE":
-        sys.exit(f"{folder}: a lens of the model {cells[1]}; give a set without distortion")
-    return int(cells[2]), int(cells[3]), [float(v) for v in cells[4:8]]
+# COLMAP's models of lenses, and how many numbers follow fx, fy, cx, cy.
+MODELS = {"PINHOLE": 0, "OPENCV": 4, "OPENCV_FISHEYE": 4, "FULL_OPENCV": 8}
+
+
+class Camera:
+    """The only camera of a model, by its line of cameras.txt: ID, MODEL, WIDTH, HEIGHT, numbers."""
+
+    def __init__(self, folder):
+        cameras = lines(folder / "cameras.txt")
+        cells = cameras[0].split()
+        self.model, numbers = cells[1], [float(v) for v in cells[4:]]
+        if len(cameras) > 1:
+            sys.exit(f"{folder}: has {len(cameras)} cameras; give the set of one")
+        if len(numbers) != 4 + MODELS.get(self.model, -5):
+            sys.exit(f"{folder}: a lens of the model {self.model}, which is none of {', '.join(MODELS)}")
+        self.width, self.height = int(cells[2]), int(cells[3])
+        self.numbers = numbers
+
+    def project(self, x, y, z):
+        """Where a point in the camera's axes is seen [pixels]."""
+        fx, fy, cx, cy, *k = self.numbers
+        u, v = x / z, y / z
+        if self.model == "OPENCV_FISHEYE":
+            r = np.hypot(u, v)
+            angle = np.arctan(r)
+            t = angle * (1 + sum(c * angle ** (2 * i + 2) for i, c in enumerate(k)))
+            factor = t / r if r > 0 else 1
+            u, v = u * factor, v * factor
+        elif k:
+            k1, k2, p1, p2, k3, k4, k5, k6 = (*k, 0, 0, 0, 0)[:8]
+            r = u * u + v * v
+            radial = (1 + r * (k1 + r * (k2 + r * k3))) / (1 + r * (k4 + r * (k5 + r * k6)))
+            u, v = (u * radial + 2 * p1 * u * v + p2 * (r + 2 * u * u),
+                    v * radial + p1 * (r + 2 * v * v) + 2 * p2 * u * v)
+        return fx * u + cx, fy * v + cy
 
 
 def matrix_of(w, x, y, z):
@@ -72,8 +104,8 @@ def reconstruct(images, camera, folder):
     database = ("--database_path", folder / "colmap.db")
     steps = (
         ("feature_extractor", *database, "--image_path", images, "--ImageReader.single_camera", "1",
-         "--ImageReader.camera_model", "PINHOLE", "--ImageReader.camera_params",
-         ",".join(str(v) for v in camera), "--SiftExtraction.use_gpu", "0",
+         "--ImageReader.camera_model", camera.model, "--ImageReader.camera_params",
+         ",".join(str(v) for v in camera.numbers), "--SiftExtraction.use_gpu", "0",
          "--SiftExtraction.max_num_features", "3000"),
         ("exhaustive_matcher", *database, "--SiftMatching.use_gpu", "0"),
         ("mapper", *database, "--image_path", images, "--output_path", folder / "sparse",
@@ -97,7 +129,8 @@ class Comparison:
 
     def __init__(self, set_folder):
         truth_folder = set_folder / "sparse/0"
-        self.width, self.height, self.camera = read_camera(truth_folder)
+        self.camera = Camera(truth_folder)
+        self.width, self.height = self.camera.width, self.camera.height
         self.name = set_folder.name
         model = reconstruct(set_folder / "images", self.camera,
                             set_folder.with_name(set_folder.name + "-colmap"))
@@ -121,13 +154,13 @@ class Comparison:
     def residuals(self):
         """Rows of x, y, and the feature less the projection there [pixels]."""
         rows = []
-        fx, fy, cx, cy = self.camera
         for rotation, translation, features in self.found.values():
             for x, y, number in features:
                 if number < 0:
                     continue
                 p = rotation @ self.points[int(number)] + translation
-                rows.append((x, y, x - fx * p[0] / p[2] - cx, y - fy * p[1] / p[2] - cy))
+                u, v = self.camera.project(*p)
+                rows.append((x, y, x - u, y - v))
         return np.array(rows)
 
     def text(self):

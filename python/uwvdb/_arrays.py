@@ -34,23 +34,36 @@ def _repeats(array: NDArray[Any]) -> bool:
     return array.nbytes > extent
 
 
-def numbers(what: str, array: ArrayLike, dtype: type) -> NDArray[np.generic]:
+def numbers(what: str, array: ArrayLike, dtype: type, made: float = 0) -> NDArray[np.generic]:
     """`array` as an array of real numbers. UsageError, which begins with `what`, for others and for
-    masked ones; InputError for what does not fit into memory."""
-    found = unmasked(what, array)
-    if found.dtype.kind not in "biuf":
-        raise UsageError(f"{what}: expected real numbers, found {found.dtype}; convert the array")
-    values_bytes = found.size * np.dtype(dtype).itemsize
-    if values_bytes > _SMALL_BYTES and (found.dtype != dtype or _repeats(found)):
-        _uwvdb.require_memory(values_bytes, f"{what}: an array of shape {shape_text(found.shape)} "
-                              f"takes", "give fewer values")
+    masked ones; InputError for what does not fit into memory: a copy, where one is needed, and
+    `made` bytes per value, of what is made of it."""
+    return _converted(what, unmasked(what, array), dtype, made, "biuf", "real numbers")
+
+
+def whole_numbers(what: str, array: ArrayLike, made: float = 0) -> NDArray[np.int64]:
+    """The same of whole numbers."""
+    found = _converted(what, unmasked(what, array), np.int64, made, "iu", "whole numbers")
+    return np.asarray(found, dtype=np.int64)
+
+
+def _converted(what: str, found: NDArray[Any], dtype: type, made: float, kinds: str,
+               expected: str) -> NDArray[np.generic]:
+    if found.dtype.kind not in kinds:
+        raise UsageError(f"{what}: expected {expected}, found {found.dtype}; convert the array")
+    is_copied = found.dtype != dtype or _repeats(found) or (
+        made > 0 and not found.flags.c_contiguous)
+    needed = found.size * (made + (np.dtype(dtype).itemsize if is_copied else 0))
+    if needed > _SMALL_BYTES:
+        _uwvdb.require_memory(needed, f"{what}: an array of shape {shape_text(found.shape)} takes",
+                              "give fewer values")
     with np.errstate(over="ignore"):  # what is infinite then is warned of as such
         return found.astype(dtype, copy=False)
 
 
-def rows(what: str, array: ArrayLike, width: int) -> NDArray[np.float64]:
-    """`array` of shape (..., width) as (N, width)."""
-    found = numbers(what, array, np.float64)
+def rows(what: str, array: ArrayLike, width: int, made: float) -> NDArray[np.float64]:
+    """`array` of shape (..., width) as (N, width); `made` as of numbers()."""
+    found = numbers(what, array, np.float64, made)
     if found.ndim == 0 or found.shape[-1] != width:
         raise UsageError(f"{what}: expected an array of shape (..., {width}), "
                          f"found {shape_text(found.shape)}")

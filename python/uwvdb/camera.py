@@ -30,7 +30,7 @@ class Camera(Native[_uwvdb.Camera]):
     def rays(self, pixels: ArrayLike) -> Rays:
         """The rays in the water that `pixels` (..., 2) see: origins and directions (..., 3). NaN
         outside the image and where no ray enters the water. Uses all processors."""
-        flat = _arrays.rows("rays", pixels, 2)
+        flat = _arrays.rows("rays", pixels, 2, made=24)  # six numbers for two
         shape = (*np.shape(pixels)[:-1], 3)
         origin, direction = self._native.rays(flat)
         return Rays(origin.reshape(shape), direction.reshape(shape))
@@ -39,7 +39,7 @@ class Camera(Native[_uwvdb.Camera]):
         """Where the camera sees `points` (..., 3) [m, world]: pixels (..., 2), to 1e-6. NaN where
         no ray leads to a point and outside the image; with `beyond`, positions outside it as well.
         Surfaces in between are ignored. Uses all processors."""
-        flat = _arrays.rows("project", points, 3)
+        flat = _arrays.rows("project", points, 3, made=6)  # two numbers for three
         return self._native.project(flat, beyond).reshape((*np.shape(points)[:-1], 2))
 
     def pixel_centres(self) -> NDArray[np.float64]:

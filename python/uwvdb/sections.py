@@ -169,21 +169,19 @@ class Geometry(Section):
         Raises UsageError for arrays of another shape or with masked values, and InputError.
         """
         where = "geometry.add"
-        points = _arrays.numbers(f"{where}: vertices", vertices, np.float64)
-        corners = _arrays.unmasked(f"{where}: faces", faces)
+        points = _arrays.numbers(f"{where}: vertices", vertices, np.float64, made=4)
+        corners = _arrays.whole_numbers(f"{where}: faces", faces, made=8)
         for what, found in (("vertices", points), ("faces", corners)):
             if found.ndim != 2 or found.shape[1] != 3 or len(found) == 0:
                 raise UsageError(f"{where}: {what}: expected an array of shape "
                                  f"({what[0].upper()}, 3), found {_arrays.shape_text(found.shape)}")
-        if corners.dtype.kind not in "iu":
-            raise UsageError(f"{where}: faces: expected whole numbers, found {corners.dtype}")
         if (uvs is None) != (texture is None):
             raise UsageError(f"{where}: give uvs and a texture, or neither")
         if texture is not None and reflectance is not None:
             raise UsageError(f"{where}: give either a reflectance or a texture")
         coordinates = texels = None
         if uvs is not None and texture is not None:
-            coordinates = _arrays.numbers(f"{where}: uvs", uvs, np.float64)
+            coordinates = _arrays.numbers(f"{where}: uvs", uvs, np.float64, made=13)
             if coordinates.shape != (len(points), 2):
                 raise UsageError(f"{where}: uvs: expected an array of shape ({len(points)}, 2), "
                                  f"found {_arrays.shape_text(coordinates.shape)}")
@@ -197,7 +195,7 @@ class Geometry(Section):
                            ("trajectory", trajectory)):
             if value is not None:
                 entry[key] = copy.copy(value)
-        self._scene.add_mesh(name, points, corners.astype(np.int64, copy=False), coordinates, texels,
+        self._scene.add_mesh(name, points, corners, coordinates, texels,
                              entry, where)
         return name
 
@@ -209,7 +207,8 @@ class Geometry(Section):
 
 
 def _texture(where: str, texture: ArrayLike) -> NDArray[np.float32]:
-    texels = np.asarray(_arrays.numbers(where, texture, np.float32), dtype=np.float32)
+    # Compared with 0 and 1; as pixels; as a texture with its smaller images.
+    texels = np.asarray(_arrays.numbers(where, texture, np.float32, made=13), dtype=np.float32)
     if texels.ndim != 3 or texels.shape[2] != 3 or 0 in texels.shape:
         raise UsageError(f"{where}: expected an array of shape (height, width, 3), found "
                          f"{_arrays.shape_text(texels.shape)}")

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _uwvdb
 from ._native import Native
+from .errors import UsageError
 
 __all__ = ["Water"]
 
@@ -55,8 +56,12 @@ class Water(Native[_uwvdb.Water]):
 
     def scattering_function(self, angles: ArrayLike) -> NDArray[np.float64]:
         """The volume scattering function (bands, *angles.shape) [1/(m sr)] at angles of scattering
-        [degrees, 0 forward to 180]."""
-        flat = _arrays.numbers("scattering_function", angles, np.float64)
+        [degrees, 0 forward to 180]. Raises UsageError for others."""
+        flat = _arrays.numbers("scattering_function", angles, np.float64,
+                               made=8 * (4 + len(self.bands)))
+        if not ((flat >= 0) & (flat <= 180)).all():
+            raise UsageError("scattering_function: expected angles from 0 to 180 degrees, found "
+                             f"{flat[~((flat >= 0) & (flat <= 180))].flat[0]}")
         values = self._native.scattering_function(np.ascontiguousarray(flat.ravel()))
         return values.reshape((len(values), *flat.shape))
 

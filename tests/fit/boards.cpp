@@ -95,10 +95,37 @@ TEST_F(FitBoards, AreFoundAndThePortFromThem) {
     EXPECT_NEAR(tilt.at("value").get<double>(), std::atan(0.06) * 180 / 3.14159265358979,
                 4 * tilt.at("error").get<double>());
 
+    // Where the camera was, with errors: in the board's axes, some 0.4 m before it.
+    for (const Json& image : found.at("images")) {
+        EXPECT_NEAR(std::abs(image.at("position")[2].get<double>()), 0.5, 0.2) << image.dump();
+        for (const char* const key : {"position_error", "turn_error"})
+            for (const Json& error : image.at(key)) {
+                EXPECT_GT(error.get<double>(), 0) << image.dump();
+                // A centimetre, a degree.
+                EXPECT_LT(error.get<double>(), key[0] == 'p' ? 0.01 : 1) << image.dump();
+            }
+    }
+
     // The table of corners serves as well.
     const ProgramResult again =
-        run({"fit", "rig.yaml", "--points", "corners.csv", "--unknown", "camera.port.distance"});
+        run({"fit", "rig.yaml", "--points", "corners.csv", "--unknown", "camera.port.distance",
+             "--found-poses", "poses.json", "--report", "fit.html"});
     EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_NE(again.out.find("The camera's poses are known to "), std::string::npos) << again.out;
+    EXPECT_NE(read("fit.html").find("Where the camera was"), std::string::npos);
+    for (const Json& frame : Json::parse(read("poses.json")).at("frames"))
+        EXPECT_EQ(frame.at("position_error").size(), 3U);
+    EXPECT_EQ(run({"fit", "rig.yaml", "--points", "corners.csv", "--unknown",
+                   "camera.port.distance", "--found-poses", "poses.csv"})
+                  .exit_code,
+              0);
+    EXPECT_EQ(read("poses.csv").find("image,x,y,z,x_error,y_error,z_error,turn_x_error"), 0U);
+    EXPECT_EQ(line_count(read("poses.csv")), 6);
+
+    // What the table's numbers are stands where they are asked for.
+    const ProgramResult help = run({"fit", "--help"});
+    EXPECT_NE(help.out.find("the first pixel's centre\n(0.5, 0.5), u to the right, v down"),
+              std::string::npos);
 }
 
 // Held upside down, too: a board of 7 x 5 corners looks the same turned by half, but one of 7 x 4

@@ -5,14 +5,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "camera/camera.h"
 #include "cli/fit/fit_report.h"
+#include "core/base/error.h"
 #include "core/base/random.h"
 #include "core/scene/scene_desc.h"
+#include "core/scene/trajectory.h"
 #include "fit/point_residuals.h"
 #include "fit/robust_fit.h"
 #include "fit/unknowns.h"
@@ -137,6 +142,128 @@ TEST(FitPoints, SayWhatTheyCannotTell) {
     EXPECT_EQ(doubts(found).front(),
               "camera.port.n_glass is not determined by these observations: leave it out, or give "
               "a --prior.");
+}
+
+// Of 40 draws the truth of each camera's place and turn is within its errors: for 240 numbers, of
+// which those of a draw hang together (so 40 count), three standard deviations are 22 % and 10 %.
+TEST(FitPoints, StandardErrorsOfPosesAreTrue) {
+    const Camera camera(read_scene_text(k_rig, "rig.yaml").camera);
+    const SceneUnknowns unknowns(scene_tree(k_rig, "rig.yaml", k_guess), "rig.yaml", k_port);
+    // Corners without noise tell where the cameras are.
+    PointResiduals exact(unknowns, boards(0, 0));
+    const std::vector<FoundPose> truth = exact.found_poses(robust_fit(exact, unknowns, {}));
+    double within_one = 0, within_two = 0, all = 0;
+    for (int seed = 1; seed <= 40; ++seed) {
+        PointResiduals noisy(unknowns, boards(0.2, seed));
+        const std::vector<FoundPose> found = noisy.found_poses(robust_fit(noisy, unknowns, {}));
+        const std::size_t image = static_cast<std::size_t>(seed) % found.size();
+        const Vector3 place =
+            found[image].world_from_camera.offset() - truth[image].world_from_camera.offset();
+        const Vector3 turn =
+            rotation_vector(rotation_of(glm::transpose(truth[image].world_from_camera.linear()) *
+                                        found[image].world_from_camera.linear())) /
+            k_degree;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const auto& [off, error] :
+                 {std::pair{place[axis], found[image].position_error[axis]},
+                  {turn[axis], found[image].turn_error[axis]}}) {
+                ASSERT_GT(error, 0);
+                within_one += std::abs(off) < error ? 1 : 0;
+                within_two += std::abs(off) < 2 * error ? 1 : 0;
+                ++all;
+            }
+    }
+    EXPECT_EQ(all, 240);
+    EXPECT_NEAR(within_one / all, 0.683, 0.22);
+    EXPECT_NEAR(within_two / all, 0.954, 0.10);
+}
+
+/// One number as it is observed directly, with this error.
+class Observed final : public Observations {
+  public:
+    Observed(double number, double error) : number_(number), error_(error) {}
+    bool prepare(std::span<const double> shared, bool /*with_derivatives*/) override {
+        value_ = shared[0];
+        return true;
+    }
+    // Of two observations that disagree the mean is found, with an error of 1 / sqrt(2) of theirs.
+    bool evaluate(std::size_t group, const Block* /*block*/, double* residuals, double* by_shared,
+                  double* /*by_block*/) const override {
+        const double seen = number_ + (group == 0 ? error_ : -error_);
+        residuals[0] = (value_ - seen) / deviation();
+        if (by_shared != nullptr) by_shared[0] = 1 / deviation();
+        return true;
+    }
+    std::vector<ResidualGroup> groups() const override { return {{1}, {1}}; }
+    std::size_t block_count() const override { return 0; }
+    const std::vector<std::string>& images() const override { return images_; }
+    Place place(std::size_t /*group*/) const override { return {}; }
+    const char* noun() const override { return "number"; }
+    const char* unit() const override { return ""; }
+    double of_group(double rms) const override { return rms; }
+
+  private:
+    double number_, error_, value_ = 0;
+    std::vector<std::string> images_{"one"};
+};
+
+// Wherever a fit begins, what it cannot tell is held against what it found.
+TEST(FitPoints, DoubtsAreOfWhatWasFound) {
+    const auto doubts_of = [](double start, double truth, double error) {
+        const SceneUnknowns unknowns(
+            scene_tree(k_rig, "rig.yaml", {"lamps.l.intensity=[" + std::to_string(start) + "]"}),
+            "rig.yaml", std::vector<std::string>{"lamps.l.intensity"});
+        Observed observed(truth, error);
+        FitOptions options;
+        options.keeps_outliers = true;
+        const FitResult found = robust_fit(observed, unknowns, options);
+        EXPECT_NEAR(found.values[0].value, truth, 1e-6 * truth);
+        return doubts(found);
+    };
+    // Known to 1 %, and a hundred times as great as where it began.
+    EXPECT_TRUE(doubts_of(0.01, 1, 0.01).empty());
+    // Ten times less than where it began, and known to no better than several times its size.
+    const std::vector<std::string> vague = doubts_of(10, 1, 5);
+    ASSERT_EQ(vague.size(), 1U);
+    EXPECT_NE(vague[0].find("lamps.l.intensity[0] is not determined to better than 5"),
+              std::string::npos)
+        << vague[0];
+}
+
+/// What a fit of the port asks of a table whose numbers are read in another way, or refuses it
+/// with.
+std::vector<std::string> questions_of(const std::function<void(PhotographedPoint&)>& read) {
+    PointTable table = boards(0.1, 5);
+    for (PhotographedPoint& point : table.points) read(point);
+    const SceneUnknowns unknowns(scene_tree(k_rig, "rig.yaml", {}), "rig.yaml",
+                                 std::vector<std::string>{"camera.port.distance"});
+    try {
+        PointResiduals points(unknowns, table);
+        const FitResult found = robust_fit(points, unknowns, {});
+        return points.questions(found, {});
+    } catch (const InputError& refused) {
+        return {refused.what()};
+    }
+}
+
+TEST(FitPoints, AskWhatATableMeans) {
+    EXPECT_TRUE(questions_of([](PhotographedPoint&) {}).empty());
+    const std::vector<std::string> millimetres = questions_of([](PhotographedPoint& point) {
+        point.point = at_origin_plus(1000.0 * from_origin(point.point));
+    });
+    ASSERT_FALSE(millimetres.empty());
+    EXPECT_EQ(millimetres[0],
+              "The points of an image are up to 288 m apart: are they in millimetres or "
+              "centimetres? Give metres, as x, y and z or as the side of a square.");
+    const std::vector<std::string> kilometres = questions_of([](PhotographedPoint& point) {
+        point.point = at_origin_plus(0.001 * from_origin(point.point));
+    });
+    ASSERT_FALSE(kilometres.empty());
+    EXPECT_NE(kilometres[0].find("metres"), std::string::npos) << kilometres[0];
+    const std::vector<std::string> swapped =
+        questions_of([](PhotographedPoint& point) { std::swap(point.seen.x, point.seen.y); });
+    ASSERT_EQ(swapped.size(), 1U);
+    EXPECT_NE(swapped[0].find("u counts to the right"), std::string::npos) << swapped[0];
 }
 
 // A prior that is far more certain than the corners is what is found, with its error.

@@ -253,8 +253,7 @@ TEST_F(Flow, IsNoneWithoutANeighbourOrAPoint) {
     const SceneDesc open = load("camera: {resolution: [8, 6], intrinsics: {fx: 25}, trajectory: " +
                                 std::string(k_turning) + "}\nrender: {fps: 10}\n");
     const Film nothing = render(open, {0}, "flow,flow_occluded");
-    for (const float value : nothing.pixel(3, 3).subspan(4))
-        EXPECT_TRUE(std::isnan(value));
+    for (const float value : nothing.pixel(3, 3).subspan(4)) EXPECT_TRUE(std::isnan(value));
 }
 
 // Built for the flow of one frame, they are those of the next.

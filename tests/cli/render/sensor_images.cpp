@@ -70,6 +70,31 @@ TEST_F(SensorImages, AreAllThatIsWrittenIfTheyAreRequested) {
     EXPECT_LT(sum / static_cast<double>(png.pixels.size()), 0.04);  // noise is costly to store
 }
 
+// An exposure a thousand times too long: each well is full. It is told of raw numbers and of what
+// is developed from them, and not of a picture that shows something.
+TEST_F(SensorImages, SayThatTheyAreSaturatedAllOver) {
+    const std::string longer = "camera.sensor.exposure=1000";
+    const auto warned = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"render", "camera.yaml", "-o", "out.exr"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const test::ProgramResult result = run(arguments);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        const std::size_t at = result.err.find("every pixel of the image is saturated");
+        if (at != std::string::npos) {
+            EXPECT_NE(result.err.find("make the exposure shorter than 1000 s, or the lamps dimmer"),
+                      std::string::npos)
+                << result.err;
+        }
+        return at != std::string::npos;
+    };
+    EXPECT_FALSE(warned({}));
+    EXPECT_TRUE(warned({"--set", longer}));
+    EXPECT_TRUE(warned({"--set", longer, "--set", developed_}));
+    // Numbers end at the converter's white, or at the full well below it.
+    EXPECT_TRUE(warned({"--set", longer, "--set", "camera.sensor.gain=0.1"}));
+    EXPECT_FALSE(warned({"--set", developed_}));
+}
+
 TEST_F(SensorImages, OfACropAreThoseOfTheWhole) {
     // Grey-world gains are each image's own.
     const std::string set = "camera.sensor.image={white_balance: [1.5, 1, 1.2], response: srgb}";
