@@ -160,20 +160,25 @@ SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>
 }
 
 /// The advice on the sequence that `subject` names, and which of its frames to inspect.
-VdbAdvice advise_on_frames(const InfoArguments& a, const fs::path& name, SequenceReport& sequence) {
+VdbAdvice advise_on_frames(const InfoArguments& a, const fs::path& name, SequenceReport& sequence,
+                           const InfoProgress& progress) {
     const FrameSurvey frames = survey_frames(a.subject, sequence.found, a.up);
     sequence.empty = frames.empty;
     sequence.largest = largest_values(frames);
     for (const SampledFrame& frame : frames.sampled) sequence.sampled.push_back(frame.frame);
     if (frames.sampled.empty()) return {};
     if (!a.frame) sequence.frame = frames.sampled.front().frame;
-    VdbAdvice advice = advise_on_sequence(frames, name);
+    VdbAdvice advice = advise_on_sequence(frames, name, progress);
     for (const std::string& fault : frames.faults)
         advice.lines.push_back("A frame cannot be read: " + fault + ".");
     return advice;
 }
 
 VdbSurvey survey_vdb(const InfoArguments& a) {
+    Progress shown("looking", "", 1, ProgressForm::text);
+    const InfoProgress progress = [&](double done, const std::string& next) {
+        shown.update(done, next);
+    };
     VdbSurvey survey;
     survey.file = a.subject.string();
     if (a.scene) survey.scene_folder = folder_of_printed_scene();
@@ -184,7 +189,7 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
     if (is_sequence) {
         survey.sequence = look_for_frames(a.subject, a.frame);
         if (a.frame) require_file(file_of_frame(a.subject, *a.frame));
-        survey.advice = advise_on_frames(a, name, survey.sequence);
+        survey.advice = advise_on_frames(a, name, survey.sequence, progress);
         file = file_of_frame(a.subject, survey.sequence.frame);
     } else if (a.frame) {
         refuse_frame(a.subject);
@@ -192,7 +197,7 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
     require_file(file);
     survey.inspection = inspect_vdb(file, printable(file.filename().string(), 300), a.up);
     if (!is_sequence || survey.advice.map.empty()) {
-        survey.advice = advise_on_vdb(survey.inspection, name);
+        survey.advice = advise_on_vdb(survey.inspection, name, progress);
         if (is_sequence)
             survey.advice.lines.emplace_back("No frame of the sequence holds anything to map.");
     }
@@ -203,7 +208,7 @@ VdbSurvey survey_vdb(const InfoArguments& a) {
 void write_thumbnail(const VdbSurvey& survey, const fs::path& file) {
     SceneDesc desc = load_scene_text(survey.advice.scene, survey.scene_folder / "scene.yaml");
     const std::shared_ptr<const ColourView> view = colour_view(desc.render.view);
-    resize_image(desc.camera, k_proposed_width / 2, k_proposed_height / 2);
+    resize_image(desc.camera, k_picture_width, k_picture_height);
     if (scattering_of(desc.render) == RenderDesc::Scattering::multiple)
         desc.render.quality = RenderDesc::Quality::draft;  // seconds, not minutes
     ImageChoice choice;
@@ -242,7 +247,7 @@ std::string info_on_vdb(const InfoArguments& a) {
 
 /// How clearly the volumes of a scene are seen in a draft of this width. Leaves them loaded.
 DraftContrast draft_contrast(Renderer& renderer, const ImageScene& scene, int width) {
-    const ImageScene with = single_draft_of(scene, width);
+    const ImageScene with = quick_draft_of(scene, width);
     renderer.set_scene(with.with([](SceneDesc& desc) {
         desc.volumes.clear();
         // The light of a volume is a lamp, which names its volume.

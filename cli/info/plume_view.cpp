@@ -3,15 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
-#include <tuple>
 #include <utility>
 
 #include "core/base/parallel.h"
 #include "core/base/vector_math.h"
 #include "core/image/colour.h"
+#include "core/light/integrator_table.h"
 #include "core/light/medium.h"
 #include "media/volumes/stratified_field.h"
 #include "render/measures/picture_numbers.h"
@@ -89,13 +90,14 @@ DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, cons
     return result;
 }
 
-ImageScene single_draft_of(const ImageScene& scene, int width) {
+ImageScene quick_draft_of(const ImageScene& scene, int width) {
     constexpr int k_most_height = 1024;
-    const ImageScene single = scene.with([](SceneDesc& desc) {
+    const RenderDesc::Scattering scattering = scattering_of(scene.desc().render);
+    const ImageScene quick = scene.with([&](SceneDesc& desc) {
         desc.render.integrator = RenderDesc::Integrator::volume;
-        desc.render.scattering = RenderDesc::Scattering::single;
+        desc.render.scattering = scattering;
     });
-    return draft_of(single, width, k_most_height);
+    return draft_of(quick, width, k_most_height);
 }
 
 namespace {
@@ -226,15 +228,37 @@ namespace {
 constexpr double k_wanted_contrast = 0.6;
 constexpr double k_most_depth = 2.5;
 constexpr double k_least_brightness = 0.03;
-constexpr int k_most_drafts = 8;
+constexpr int k_most_drafts = 8, k_most_pictures = 3;  // of one water and one kind of light
+constexpr std::array k_waters{"jerlov-II", "jerlov-IB"};
+
+/// Counts what is rendered, for whoever waits for it.
+class DraftCount {
+  public:
+    explicit DraftCount(const InfoProgress& progress) : progress_(progress) {}
+
+    void next(const char* what) {
+        // With and without the volume; small, finer, and in all light.
+        constexpr double k_most =
+            static_cast<double>(k_waters.size()) * (k_most_drafts + k_most_pictures + 5);
+        progress_(std::min(1.0, count_++ / k_most), what);
+    }
+
+  private:
+    const InfoProgress& progress_;
+    int count_ = 0;
+};
 
 /// Drafts of one scene with its volume at different concentrations.
 class Drafts {
   public:
-    Drafts(const SceneProposal& proposal, const VolumeDesc& volume, int width) {
+    Drafts(const SceneProposal& proposal, const VolumeDesc& volume, int width,
+           RenderDesc::Scattering scattering, DraftCount& count)
+        : count_(count) {
         SceneDesc desc = load_scene_text(proposal_yaml(proposal), "proposal.yaml");
         desc.volumes = {volume};
-        renderer_.set_scene(single_draft_of(std::move(desc), width));
+        desc.render.scattering = scattering;
+        renderer_.set_scene(quick_draft_of(std::move(desc), width));
+        count_.next("the scene without the volume");
         for (const LoadedVolume& loaded : renderer_.assemble().volumes)
             grids_.insert(grids_.end(), loaded.grids.begin(), loaded.grids.end());
         set_grids({});
@@ -243,6 +267,7 @@ class Drafts {
     }
 
     DraftContrast at(double factor) {
+        count_.next("how clearly the volume is seen");
         scale_grids(factor);
         const Film& with = renderer_.render();
         return compare_drafts(renderer_.assembled(), with, *without_);
@@ -267,6 +292,7 @@ class Drafts {
         });
     }
 
+    DraftCount& count_;
     Renderer renderer_;
     std::vector<GridVolume> grids_;
     std::optional<Film> without_;
@@ -281,12 +307,13 @@ bool is_good(const DraftContrast& draft) {
     return is_fit(draft) && draft.contrast >= k_wanted_contrast;
 }
 
+bool will_do(const DraftContrast& draft) {
+    return is_fit(draft) && draft.contrast >= k_plain_to_see;
+}
+
 /// Whether `a` is to be preferred: what is fit if it is plain to see, then the clearer, up to what
 /// is wanted, then the less opaque.
 bool is_better(const DraftContrast& a, const DraftContrast& b) {
-    const auto will_do = [](const DraftContrast& d) {
-        return is_fit(d) && d.contrast >= k_plain_to_see;
-    };
     if (will_do(a) != will_do(b)) return will_do(a);
     const auto clear = [](const DraftContrast& d) {
         return std::min(d.contrast, k_wanted_contrast);
@@ -294,11 +321,12 @@ bool is_better(const DraftContrast& a, const DraftContrast& b) {
     return clear(a) > clear(b) * 1.02 || (clear(a) >= clear(b) && a.depth < b.depth);
 }
 
-/// Raises or lowers the concentrations until the draft is good, or no longer becomes better.
-std::pair<double, DraftContrast> best_factor(Drafts& drafts, DraftContrast best) {
-    double factor = 1, best_factor = 1;
+/// Raises or lowers the concentrations, `factor` times the volume's, until the draft is good, or no
+/// longer becomes better.
+void improve(Drafts& drafts, int most, double& best_factor, DraftContrast& best) {
+    double factor = best_factor;
     const bool raise = best.contrast < k_wanted_contrast && best.depth < k_most_depth;
-    for (int n = 1; n < k_most_drafts && !is_good(best); ++n) {
+    for (int n = 1; n < most && !is_good(best); ++n) {
         // Where most of the volume is far thinner than its densest part, in one step.
         const double step = std::clamp(1 / std::max(best.depth, 1e-12), 2.0, 1e9);
         factor *= raise ? step : 0.5;
@@ -307,29 +335,43 @@ std::pair<double, DraftContrast> best_factor(Drafts& drafts, DraftContrast best)
         best = draft;
         best_factor = factor;
     }
-    return {best_factor, best};
+}
+
+PlumeView view_in(const char* water, const VolumeDesc& volume, const Bounds& bounds,
+                  DraftCount& count) {
+    using Scattering = RenderDesc::Scattering;
+    PlumeView view;
+    view.proposal = propose_scene(bounds);
+    view.proposal.water = water;
+    std::optional<Drafts> drafts(std::in_place, view.proposal, volume, k_draft_width,
+                                 Scattering::single, count);
+    view.draft = drafts->at(1);
+    if (view.draft.seen < k_least_seen) {
+        drafts.emplace(view.proposal, volume, k_fine_draft_width, Scattering::single, count);
+        view.draft = drafts->at(1);
+    }
+    improve(*drafts, k_most_drafts, view.factor, view.draft);
+    count.next("the light that single scattering leaves out");
+    view.left_out = drafts->light_left_out(view.factor);
+    // A scene is judged by its picture: other light makes another.
+    drafts.emplace(view.proposal, volume, k_picture_width,
+                   view.needs_all_light() ? Scattering::multiple : Scattering::single, count);
+    view.draft = drafts->at(view.factor);
+    if (view.needs_all_light()) improve(*drafts, k_most_pictures, view.factor, view.draft);
+    return view;
 }
 
 }  // namespace
 
-PlumeView view_plume(const VolumeDesc& volume, const Bounds& bounds) {
+PlumeView view_plume(const VolumeDesc& volume, const Bounds& bounds, const InfoProgress& progress) {
+    DraftCount count(progress);
     PlumeView best;
-    int width = k_draft_width;
-    for (const char* water : {"jerlov-II", "jerlov-IB"}) {
-        PlumeView view;
-        view.proposal = propose_scene(bounds);
-        view.proposal.water = water;
-        std::optional<Drafts> drafts(std::in_place, view.proposal, volume, width);
-        view.draft = drafts->at(1);
-        if (view.draft.seen < k_least_seen && width != k_fine_draft_width) {
-            width = k_fine_draft_width;
-            drafts.emplace(view.proposal, volume, width);
-            view.draft = drafts->at(1);
-        }
-        std::tie(view.factor, view.draft) = best_factor(*drafts, view.draft);
-        view.left_out = drafts->light_left_out(view.factor);
-        if (best.proposal.lamps.empty() || is_better(view.draft, best.draft)) best = view;
-        if (is_good(best.draft)) break;
+    for (const char* water : k_waters) {
+        PlumeView view = view_in(water, volume, bounds, count);
+        if (best.proposal.lamps.empty() || is_better(view.draft, best.draft))
+            best = std::move(view);
+        // All light takes seconds: what is plain to see in it will do.
+        if (is_good(best.draft) || (best.needs_all_light() && will_do(best.draft))) break;
     }
     return best;
 }

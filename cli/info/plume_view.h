@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,8 +35,9 @@ struct DraftContrast {
 /// size.
 DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, const Film& without);
 
-/// The scene of a draft with light scattered once, at most `width` pixels wide (run/draft.h).
-ImageScene single_draft_of(const ImageScene& scene, int width);
+/// The scene of a draft by the fast integrator, with the light that the scene asks for, scattered
+/// once or all of it, at most `width` pixels wide (run/draft.h).
+ImageScene quick_draft_of(const ImageScene& scene, int width);
 
 /// The width of drafts, and of those of volumes too small to be seen in these.
 inline constexpr int k_draft_width = 128, k_fine_draft_width = 512;
@@ -67,6 +69,9 @@ struct SceneProposal {
 /// The camera that proposals have [pixels, degrees].
 inline constexpr int k_proposed_width = 960, k_proposed_height = 540;
 inline constexpr double k_proposed_fov = 60;
+/// The picture by which a proposal is judged, and that `--picture` shows.
+inline constexpr int k_picture_width = k_proposed_width / 2,
+                     k_picture_height = k_proposed_height / 2;
 
 /// From the side on which the box is broad, a little above, so near that it just fits into nine
 /// tenths of the picture. One lamp beside the camera and one behind the box, both out of the
@@ -82,14 +87,24 @@ std::string length_text(double length, double size);
 /// A proposed scene and how well it shows its volume.
 struct PlumeView {
     SceneProposal proposal;
-    double factor = 1;  // by which the volume's concentrations are to be multiplied
-    DraftContrast draft;
+    double factor = 1;    // by which the volume's concentrations are to be multiplied
+    DraftContrast draft;  // of the picture, in the light that the proposal asks for
     std::optional<LightLeftOut> left_out;  // by single scattering, with these concentrations
+
+    /// Whether the proposal asks for all light.
+    bool needs_all_light() const { return left_out && left_out->matters(); }
 };
+
+/// Hears how much of the work on a file is done, 0 to 1, and what is next.
+using InfoProgress = std::function<void(double done, const std::string& next)>;
+inline void ignore_progress(double /*done*/, const std::string& /*next*/) {}
 
 /// Proposes a scene around `bounds`, which hold what `volume` holds, and searches by drafts for
 /// concentrations, and only then for clearer water, that make the volume plain to see without being
-/// opaque. `volume` names a file, not a sequence. Throws InputError if it cannot be loaded.
-PlumeView view_plume(const VolumeDesc& volume, const Bounds& bounds);
+/// opaque: first by small drafts in which light is scattered once, then, where that leaves out much
+/// of it, by the picture in all light. There are at most some thirty of them, whatever the volume.
+/// `volume` names a file, not a sequence. Throws InputError if it cannot be loaded.
+PlumeView view_plume(const VolumeDesc& volume, const Bounds& bounds,
+                     const InfoProgress& progress = ignore_progress);
 
 }  // namespace uw

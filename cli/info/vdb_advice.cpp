@@ -13,6 +13,7 @@
 
 #include "core/base/error.h"
 #include "core/base/input_files.h"
+#include "core/base/parallel.h"
 #include "core/base/text.h"
 #include "core/light/medium.h"
 #include "core/scene/render_desc.h"
@@ -571,8 +572,9 @@ constexpr double k_large_per_small = 5;
 constexpr double k_most_small = 1e12 / k_large_per_small;  // what scenes take of both [ppm]
 /// Beyond these no values are ppm, whatever the plume.
 constexpr double k_least_usual = 1e-6, k_most_usual = 1e6;
-constexpr std::size_t k_wanted_band = 1;  // of the default bands: 540 nm
-constexpr int k_lines = 24;               // across each side
+constexpr std::size_t k_wanted_band = 1;         // of the default bands: 540 nm
+constexpr int k_lines = 24, k_fewest_lines = 4;  // across each side
+constexpr double k_most_regions = 2e6;           // blocks and tiles that all of them meet
 
 double round_to_two_digits(double value) {
     const double power = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -639,25 +641,45 @@ Bounds bounds_of(const LoadedVolume& volume) {
     return bounds;
 }
 
-/// The largest optical depth per band of `depth` and of the lines along `axis`, which are spaced
-/// evenly over the bounds.
+/// Lines along `axis`, `across` by `across` of them, spaced evenly over the bounds.
+std::vector<std::pair<Point3, Point3>> lines_along(const Bounds& bounds, int axis, int across) {
+    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    std::vector<std::pair<Point3, Point3>> lines;
+    for (int i = 0; i < across; ++i)
+        for (int j = 0; j < across; ++j) {
+            Point3 a = bounds.min, b = bounds.max;
+            a[u] = b[u] = std::lerp(bounds.min[u], bounds.max[u], (i + 0.5) / across);
+            a[v] = b[v] = std::lerp(bounds.min[v], bounds.max[v], (j + 0.5) / across);
+            lines.emplace_back(a, b);
+        }
+    return lines;
+}
+
+/// How many lines on a side of the bounds are affordable, whatever the grids hold: by the regions
+/// that a few of them meet.
+int affordable_lines(const GridField& field, const Bounds& bounds, int axis) {
+    double regions = 0;
+    for (const auto& [a, b] : lines_along(bounds, axis, k_fewest_lines))
+        for (const GridVolume& volume : field.volumes())
+            regions += static_cast<double>(volume.regions_along(a, b));
+    const double each = std::max(1.0, regions / (k_fewest_lines * k_fewest_lines));
+    return std::clamp(static_cast<int>(std::sqrt(k_most_regions / each)), k_fewest_lines, k_lines);
+}
+
+/// The largest optical depth per band of `depth` and of the lines along `axis`.
 std::vector<double> deepest(const GridField& field, const Medium& medium, const Bounds& bounds,
                             int axis, std::vector<double> depth) {
     AttenuationTable attenuation(medium);
     attenuation.uniform = {};
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    std::vector<double> columns(static_cast<std::size_t>(medium.constituent_count()));
-    for (int i = 0; i < k_lines; ++i)
-        for (int j = 0; j < k_lines; ++j) {
-            Point3 a = bounds.min, b = bounds.max;
-            a[u] = b[u] = bounds.min[u] + (i + 0.5) / k_lines * (bounds.max[u] - bounds.min[u]);
-            a[v] = b[v] = bounds.min[v] + (j + 0.5) / k_lines * (bounds.max[v] - bounds.min[v]);
-            field.column(a, b, columns);
-            for (int band = 0; band < medium.band_count(); ++band) {
-                const auto n = static_cast<std::size_t>(band);
-                depth[n] = std::max(depth[n], attenuation.optical_depth(band, 0, columns));
-            }
-        }
+    const auto lines = lines_along(bounds, axis, affordable_lines(field, bounds, axis));
+    std::vector<std::vector<double>> columns(lines.size());
+    parallel_for(lines.size(), [&](std::size_t n) {
+        columns[n].resize(static_cast<std::size_t>(medium.constituent_count()));
+        field.column(lines[n].first, lines[n].second, columns[n]);
+    });
+    for (const std::vector<double>& column : columns)
+        for (std::size_t band = 0; band < depth.size(); ++band)
+            depth[band] = std::max(depth[band], attenuation.optical_depth(band, 0, column));
     return depth;
 }
 
@@ -687,8 +709,8 @@ void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
         advice.optical_depth.push_back(depth * advice.small_ppm / first);
 }
 
-void choose_concentrations(const VdbInspection& inspection, const Bounds& others,
-                           VdbAdvice& advice) {
+void choose_concentrations(const VdbInspection& inspection, const Bounds& others, VdbAdvice& advice,
+                           const InfoProgress& progress) {
     start_concentrations(inspection, advice);
     const Affine world_from_upright = placing(advice);
     if (!others.empty())
@@ -699,7 +721,7 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
         mapping.small_ppm = advice.small_ppm;
         mapping.large_ppm = advice.large_ppm;
     }
-    advice.view = view_plume(desc, advice.bounds);
+    advice.view = view_plume(desc, advice.bounds, progress);
     const double small_ppm =
         std::min(round_to_two_digits(advice.view.factor * advice.small_ppm), k_most_small);
     for (double& depth : advice.optical_depth) depth *= small_ppm / advice.small_ppm;
@@ -709,19 +731,20 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
     advice.lines.push_back(fmt::format(
         "small: {:g} and large: {:g} ppm per unit give an optical depth of about {:.2g} at {:g} nm "
         "through the densest part, and a contrast of {:.0f} % where it is clearest (median over "
-        "its pixels {:.2g} %) in a draft of the scene that --scene prints (in {}): {}. Your own "
+        "its pixels {:.2g} %) in a picture of the scene that --scene prints (in {}{}): {}. Your "
+        "own "
         "plume's concentration may differ.",
         advice.small_ppm, advice.large_ppm, advice.optical_depth[k_wanted_band],
         advice.bands_nm[k_wanted_band], 100 * contrast, 100 * advice.view.draft.median_contrast,
-        advice.view.proposal.water,
+        advice.view.proposal.water, advice.view.needs_all_light() ? ", in all light" : "",
         contrast >= k_plain_to_see ? "neither invisible nor black"
                                    : "it will hardly be seen; a smaller transform.scale brings "
                                      "camera and lamps nearer"));
-    if (const auto& left_out = advice.view.left_out; left_out && left_out->matters())
+    if (advice.view.needs_all_light())
         advice.lines.push_back(fmt::format(
             "Single scattering leaves out about {:.0f} % of that scene's light: it asks for all of "
             "it, with render.scattering: multiple.",
-            100 * left_out->share));
+            100 * advice.view.left_out->share));
 }
 
 namespace {
@@ -808,14 +831,13 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
         "#   uwvdb render scene.yaml{1}\n",
         name, is_sequence ? " --frames FIRST-LAST" : "");
     advice.scene += proposal_yaml(advice.view.proposal) + advice.volumes;
-    const auto& left_out = advice.view.left_out;
-    const bool is_multiple = left_out && left_out->matters();
+    const bool is_multiple = advice.view.needs_all_light();
     if (!is_multiple && !advice.fps) return;
     advice.scene += "render:\n";
     if (is_multiple)
         advice.scene += fmt::format(
             "  scattering: multiple    # single leaves out about {:.0f} % of the light\n",
-            100 * left_out->share);
+            100 * advice.view.left_out->share);
     if (advice.fps) advice.scene += fmt::format("  fps: {:.6g}\n", *advice.fps);
 }
 
@@ -854,7 +876,7 @@ void say_what_is_below(VdbAdvice& advice) {
 }
 
 VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
-                 const std::filesystem::path& file) {
+                 const std::filesystem::path& file, const InfoProgress& progress) {
     VdbAdvice advice;
     say_what_to_map(inspection, advice);
     say_what_to_leave(inspection, advice);
@@ -873,7 +895,7 @@ VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
     say_motion(inspection, advice);
     if (!frames.sampled.empty()) say_frame_rate(inspection, advice);
     say_unit(inspection, advice);
-    choose_concentrations(inspection, others, advice);
+    choose_concentrations(inspection, others, advice, progress);
     say_what_is_below(advice);
     write_block(inspection, file, advice);
     write_scene(file, !frames.sampled.empty(), advice);
@@ -906,14 +928,16 @@ void say_range(const FrameSurvey& frames, VdbAdvice& advice) {
 
 }  // namespace
 
-VdbAdvice advise_on_vdb(const VdbInspection& inspection, const std::filesystem::path& file) {
-    return advise(inspection, {}, file);
+VdbAdvice advise_on_vdb(const VdbInspection& inspection, const std::filesystem::path& file,
+                        const InfoProgress& progress) {
+    return advise(inspection, {}, file, progress);
 }
 
-VdbAdvice advise_on_sequence(const FrameSurvey& frames, const std::filesystem::path& pattern) {
+VdbAdvice advise_on_sequence(const FrameSurvey& frames, const std::filesystem::path& pattern,
+                             const InfoProgress& progress) {
     const auto fullest = std::ranges::max_element(
         frames.sampled, {}, [](const SampledFrame& f) { return content_of(f.inspection); });
-    VdbAdvice advice = advise(fullest->inspection, frames, pattern);
+    VdbAdvice advice = advise(fullest->inspection, frames, pattern, progress);
     say_range(frames, advice);
     return advice;
 }

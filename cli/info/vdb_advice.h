@@ -74,16 +74,18 @@ void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice);
 /// Begins with these and goes on, by drafts, to what makes the plume plain to see; decides
 /// `advice.view`, extends `bounds` by those of `others`, which are in the file's size and place,
 /// and adds a line about it.
-void choose_concentrations(const VdbInspection& inspection, const Bounds& others,
-                           VdbAdvice& advice);
+void choose_concentrations(const VdbInspection& inspection, const Bounds& others, VdbAdvice& advice,
+                           const InfoProgress& progress = ignore_progress);
 
 /// Advice on one file; reads the grids to map once more and renders drafts of them. `file`: its
 /// name to write into the scene.
-VdbAdvice advise_on_vdb(const VdbInspection& inspection, const std::filesystem::path& file);
+VdbAdvice advise_on_vdb(const VdbInspection& inspection, const std::filesystem::path& file,
+                        const InfoProgress& progress = ignore_progress);
 
 /// Advice on a whole sequence from the frames that were sampled, the same whichever of them is
 /// looked at: its bounds and camera hold all of them, its concentrations suit the frame that holds
 /// most. `pattern`: the name to write into the scene.
-VdbAdvice advise_on_sequence(const FrameSurvey& frames, const std::filesystem::path& pattern);
+VdbAdvice advise_on_sequence(const FrameSurvey& frames, const std::filesystem::path& pattern,
+                             const InfoProgress& progress = ignore_progress);
 
 }  // namespace uw

@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/numerics.h"
 #include "core/base/random.h"
+#include "core/light/patch_profile.h"
 
 namespace uw {
 
@@ -241,7 +242,8 @@ struct Facing {
             // affects shading.
             const double towards = glm::dot(hit.normal, to_lamp);
             if (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
-            const double relative = lamp.relative_intensity(-to_lamp) * lamp.focus(hit.position);
+            const double relative =
+                relative_intensity_towards(lamp, *all[i]) * lamp.focus(hit.position);
             if (relative <= 0) continue;
             const double radius = glm::length(to_lamp);
             samples.push_back(i);

@@ -12,11 +12,12 @@ namespace uw {
 
 namespace {
 
-// Smaller footprints [pixels, radius] are boxes with the same second moments, whose overlap with
-// each pixel is exact: within a pixel nothing else of a shape is seen.
-constexpr double k_small = 0.7;
-// The least half width of a box, which is that of a point within one pixel.
-constexpr double k_least_half = 1e-6;
+// Smaller footprints [pixels, radius], and those whose edges are less wide [pixels, half], are
+// ellipses with the second moments of disk and blur, of which each pixel has exactly what it
+// covers: nothing else of an edge is seen.
+constexpr double k_small = 0.7, k_sharp = 0.25;
+// The least radius of an ellipse, and half width of a box, which are those of a point.
+constexpr double k_least_radius = 1e-3, k_least_half = 1e-6;
 // The steps of a path [pixels, or of the radius]: their spread, step^2 / 12, is less than 3 % of
 // that of a disk.
 constexpr double k_step = 0.5, k_step_of_radius = 0.25;
@@ -41,6 +42,47 @@ std::array<double, 2> deviations(const PlaneMap& disk, const PlaneMap& blur) {
 std::array<double, 2> extents(const PlaneMap& disk, const PlaneMap& blur) {
     return {std::hypot(disk.xx, disk.xy) + std::hypot(blur.xx, blur.xy),
             std::hypot(disk.yx, disk.yy) + std::hypot(blur.yx, blur.yy)};
+}
+
+/// A map from the plane to the unit disk of the ellipse with the second moments of both disks.
+PlaneMap unit_from_ellipse(const PlaneMap& disk, const PlaneMap& blur) {
+    const double xx = disk.xx * disk.xx + disk.xy * disk.xy + blur.xx * blur.xx + blur.xy * blur.xy;
+    const double yy = disk.yx * disk.yx + disk.yy * disk.yy + blur.yx * blur.yx + blur.yy * blur.yy;
+    const double xy = disk.xx * disk.yx + disk.xy * disk.yy + blur.xx * blur.yx + blur.xy * blur.yy;
+    // A root of that matrix (Cholesky's).
+    const double x = std::max(k_least_radius, std::sqrt(xx)), skew = xy / x;
+    const double y = std::max(k_least_radius, std::sqrt(std::max(0.0, yy - skew * skew)));
+    return PlaneMap{x, skew, 0, y}.inverse();
+}
+
+using PlanePoint = std::array<double, 2>;
+
+PlanePoint operator*(const PlaneMap& map, const PlanePoint& p) {
+    return {map.xx * p[0] + map.xy * p[1], map.yx * p[0] + map.yy * p[1]};
+}
+double cross(const PlanePoint& a, const PlanePoint& b) {
+    return a[0] * b[1] - a[1] * b[0];
+}
+double dot(const PlanePoint& a, const PlanePoint& b) {
+    return a[0] * b[0] + a[1] * b[1];
+}
+
+/// The signed area of the part of the triangle 0, a, b that lies in the unit disk.
+double area_in_disk(const PlanePoint& a, const PlanePoint& b) {
+    const auto sector = [](const PlanePoint& from, const PlanePoint& to) {
+        return 0.5 * std::atan2(cross(from, to), dot(from, to));
+    };
+    const PlanePoint way{b[0] - a[0], b[1] - a[1]};
+    const double length = dot(way, way), middle = -dot(a, way);
+    const double square = middle * middle - length * (dot(a, a) - 1);
+    if (!(square > 0)) return sector(a, b);
+    const double root = std::sqrt(square);
+    const double begin = (middle - root) / length, end = (middle + root) / length;
+    if (begin >= 1 || end <= 0) return sector(a, b);
+    const auto at = [&](double t) { return PlanePoint{a[0] + t * way[0], a[1] + t * way[1]}; };
+    const PlanePoint enters = at(std::max(begin, 0.0)), leaves = at(std::min(end, 1.0));
+    return (begin > 0 ? sector(a, enters) : 0) + 0.5 * cross(enters, leaves) +
+           (end < 1 ? sector(leaves, b) : 0);
 }
 
 double overlap(double begin, double end, int pixel) {
@@ -121,15 +163,24 @@ Footprint::Footprint(const Path& path, const PlaneMap& disk, const PlaneMap& blu
                           std::hypot(path.quadratic[0], path.quadratic[1]);
     const double step = std::max(k_step, k_step_of_radius * radius);
     steps_ = static_cast<int>(std::clamp(std::ceil(2 * length / step), 1.0, k_most_steps));
-    if (is_small_) {
+    const double softness = std::min(disk_radius, blur_radius);
+    is_sharp_ = softness < k_sharp || is_small_;
+    if (is_small_ && steps_ > 1) {
         half_ = deviations(disk, blur);
         for (double& half : half_) half = std::max(k_least_half, std::sqrt(3.0) * half);
+    } else if (is_sharp_) {
+        unit_from_plane_ = unit_from_ellipse(disk, blur);
+        const PlaneMap ellipse = unit_from_plane_.inverse();
+        half_ = {std::abs(ellipse.xx), std::hypot(ellipse.yx, ellipse.yy)};
+        for (const double side : {-0.5, 0.5}) {
+            const PlanePoint corner = unit_from_plane_ * PlanePoint{0.5, side};
+            reach_ = std::max(reach_, std::hypot(corner[0], corner[1]));
+        }
     } else {
-        const bool is_sharp = disk_radius >= blur_radius;
-        unit_from_plane_ = (is_sharp ? disk : blur).inverse();
-        ratio_ = is_sharp ? blur_radius / disk_radius : disk_radius / blur_radius;
+        const bool is_of_disk = disk_radius >= blur_radius;
+        unit_from_plane_ = (is_of_disk ? disk : blur).inverse();
+        ratio_ = is_of_disk ? blur_radius / disk_radius : disk_radius / blur_radius;
         half_ = extents(disk, blur);
-        const double softness = std::min(disk_radius, blur_radius);
         samples_ = softness >= k_soft && radius > 2 ? 1 : (radius < 4 ? 3 : 2);
         scale_ = 1 / (std::numbers::pi * std::max(disk_radius, blur_radius) *
                       std::max(disk_radius, blur_radius));
@@ -165,12 +216,12 @@ PixelWindow Footprint::window_around(const std::array<double, 2>& at) const {
 void Footprint::add_shares(const PixelWindow& window, Grid2D<double>& shares) const {
     for (int i = 0; i < steps_; ++i) {
         const std::array<double, 2> at = step_position(i);
-        if (!is_small_) {
-            add_ellipse(at, 1.0 / steps_, window, shares);
+        if (!is_sharp_) {
+            add_soft(at, 1.0 / steps_, window, shares);
             continue;
         }
-        if (steps_ == 1) {
-            add_box(at, half_, 1, window, shares);
+        if (!is_small_ || steps_ == 1) {
+            add_sharp(at, 1.0 / steps_, window, shares);
             continue;
         }
         // The box is as long as what it passes in the step: those of all steps join.
@@ -194,8 +245,37 @@ void Footprint::add_box(const std::array<double, 2>& at, const std::array<double
     }
 }
 
-void Footprint::add_ellipse(const std::array<double, 2>& at, double weight,
-                            const PixelWindow& window, Grid2D<double>& shares) const {
+void Footprint::add_sharp(const std::array<double, 2>& at, double weight, const PixelWindow& window,
+                          Grid2D<double>& shares) const {
+    const PixelWindow whole = around(at, half_), inside = intersection(window, whole);
+    if (whole.width() == 1 && whole.height() == 1 && inside.width() == 1 && inside.height() == 1) {
+        shares(inside.x0 - window.x0, inside.y0 - window.y0) += weight;
+        return;
+    }
+    const double per_area = weight / std::numbers::pi;  // of the unit disk
+    const double pixel_area = unit_from_plane_.determinant();
+    for (int y = inside.y0; y < inside.y1; ++y)
+        for (int x = inside.x0; x < inside.x1; ++x) {
+            const double u = x - at[0], v = y - at[1];
+            const PlanePoint centre = unit_from_plane_ * PlanePoint{u + 0.5, v + 0.5};
+            const double away = std::hypot(centre[0], centre[1]);
+            if (away - reach_ >= 1) continue;
+            double area = pixel_area;
+            if (away + reach_ > 1) {
+                const std::array<PlanePoint, 4> corners{unit_from_plane_ * PlanePoint{u, v},
+                                                        unit_from_plane_ * PlanePoint{u + 1, v},
+                                                        unit_from_plane_ * PlanePoint{u + 1, v + 1},
+                                                        unit_from_plane_ * PlanePoint{u, v + 1}};
+                area = 0;
+                for (std::size_t i = 0; i < corners.size(); ++i)
+                    area += area_in_disk(corners[i], corners[(i + 1) % corners.size()]);
+            }
+            shares(x - window.x0, y - window.y0) += per_area * std::max(0.0, area);
+        }
+}
+
+void Footprint::add_soft(const std::array<double, 2>& at, double weight, const PixelWindow& window,
+                         Grid2D<double>& shares) const {
     const PixelWindow whole = around(at, half_), inside = intersection(window, whole);
     if (inside.x0 >= inside.x1 || inside.y0 >= inside.y1) return;
     const PixelWindow& drawn = is_scaled_ ? inside : whole;

@@ -62,8 +62,10 @@ class Footprint {
     std::array<double, 2> step_position(int step) const;
     void add_box(const std::array<double, 2>& at, const std::array<double, 2>& half, double weight,
                  const PixelWindow& window, Grid2D<double>& shares) const;
-    void add_ellipse(const std::array<double, 2>& at, double weight, const PixelWindow& window,
-                     Grid2D<double>& shares) const;
+    void add_sharp(const std::array<double, 2>& at, double weight, const PixelWindow& window,
+                   Grid2D<double>& shares) const;
+    void add_soft(const std::array<double, 2>& at, double weight, const PixelWindow& window,
+                  Grid2D<double>& shares) const;
     // How many samples of each pixel an ellipse holds; returns their sum.
     double count_samples(const std::array<double, 2>& at, const PixelWindow& window,
                          Grid2D<double>& counts) const;
@@ -71,10 +73,12 @@ class Footprint {
 
     Path path_;
     double area_ = 0;
-    bool is_small_ = false;         // drawn as a box of the same extent
+    bool is_small_ = false;         // a path of it is drawn as boxes of the same extent
+    bool is_sharp_ = false;         // an ellipse with a sharp edge
     int steps_ = 1;                 // positions along the path
     std::array<double, 2> half_{};  // of the box; of the box around the ellipse
-    PlaneMap unit_from_plane_;      // of the greater of disk and blur
+    PlaneMap unit_from_plane_;      // of the sharp ellipse, or the greater of disk and blur
+    double reach_ = 0;              // from the centre of a pixel to its corners, of the unit disk
     double ratio_ = 0;              // of the lesser to it
     int samples_ = 1;               // along each axis of a pixel
     double scale_ = 1;              // of the shares of an ellipse

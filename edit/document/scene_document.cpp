@@ -75,6 +75,10 @@ std::string read(const fs::path& file) {
     return read_text_file(file, origin_of_scene(file), YamlLimits{}.bytes, "scene");
 }
 
+std::string name_of(const fs::path& file) {
+    return printable(file.filename().string(), 300);
+}
+
 [[noreturn]] void fail_to_write(const fs::path& file, std::string_view why) {
     throw IoError(fmt::format("{}: cannot write: {}", file.string(), why));
 }
@@ -152,14 +156,19 @@ void SceneDocument::reload() {
 
 void SceneDocument::save(Overwrite overwrite) {
     if (overwrite == Overwrite::no && disk_state() == DiskState::changed)
-        fail_to_write(file_,
-                      "it has been changed by another program since it was read; reload "
-                      "it, overwrite it, or save under another name");
+        throw ConflictError(
+            fmt::format("{}: has been changed by another program since it was "
+                        "read; reload it, overwrite it, or save under another name",
+                        name_of(file_)));
     write(file_, true);
 }
 
 void SceneDocument::save_as(const fs::path& file, Overwrite overwrite) {
     std::error_code ignored;
+    const fs::file_status status = fs::symlink_status(file, ignored);
+    if (file.filename() != file_.filename() && fs::is_symlink(status))
+        throw ConflictError(
+            fmt::format("{}: is a symbolic link; choose another name", name_of(file)));
     if (fs::equivalent(file, file_, ignored)) {
         save(overwrite);
         return;
@@ -174,8 +183,9 @@ void SceneDocument::save_as(const fs::path& file, Overwrite overwrite) {
         fail_to_write(file,
                       "names of files in a scene are relative to its folder; choose a name "
                       "in the scene's own folder");
-    if (overwrite == Overwrite::no && fs::exists(fs::symlink_status(file, ignored)))
-        fail_to_write(file, "there is such a file; choose another name, or overwrite it");
+    if (overwrite == Overwrite::no && fs::exists(status))
+        throw ConflictError(
+            fmt::format("{}: exists; choose another name, or overwrite it", name_of(file)));
     write(file, false);
     file_ = file;
     show(history_.text());  // its messages name the new file

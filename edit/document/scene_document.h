@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -52,6 +53,12 @@ class TextHistory {
     bool is_group_open_ = false;
 };
 
+/// Reports, in one line, a request that was right, but not for the scene, or its file, as it has
+/// become.
+class ConflictError : public std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
 /// A scene's file compared with what was last read from it or written to it.
 enum class DiskState { same, changed, missing };
 
@@ -90,13 +97,14 @@ class SceneDocument {
     void reload();
 
     /// Writes the text to its file, whole or not at all; the file keeps its permissions. Throws
-    /// IoError if that is impossible, or if the file is not as it was when it was last read or
-    /// written and `overwrite` is no.
+    /// ConflictError if the file is not as it was when it was last read or written and `overwrite`
+    /// is no, IoError if it cannot be written.
     void save(Overwrite overwrite = Overwrite::no);
 
     /// Writes the text to another file of the same folder, to which the document then belongs:
-    /// names of files in a scene are relative to its folder. Throws IoError like save; also if
-    /// there is such a file and `overwrite` is no, and if it is one that the program has read.
+    /// names of files in a scene are relative to its folder. Throws like save; ConflictError also
+    /// if there is such a file and `overwrite` is no, and if the name is a symbolic link, through
+    /// which writing would go wherever it leads; IoError if it is a file that the program has read.
     void save_as(const std::filesystem::path& file, Overwrite overwrite = Overwrite::no);
 
   private:

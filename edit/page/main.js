@@ -140,11 +140,9 @@ const showState = ({ error, changed_on_disk: changed, deleted_on_disk: deleted, 
 };
 const lightNote = h("span", { class: "light-note-text" });
 const allLight = h("button", { type: "button",
-    title: "Sets render.scattering to multiple, which takes longer", onclick: async () => {
-        const done = await editing.edit("render all light",
-            [{ op: "set", path: "render.scattering", value: "multiple" }]);
-        if (done) picture.exposeNext();  // there is more light
-    } }, "All light");
+    title: "Sets render.scattering to multiple, which takes longer",
+    onclick: () => editing.edit("render all light",
+        [{ op: "set", path: "render.scattering", value: "multiple" }]) }, "All light");
 const lightBox = h("div", { class: "light-note", role: "note", hidden: true }, lightNote, allLight);
 byId("snap-tools").append(lightBox);
 const showLightNote = ({ light_note: note }) => {

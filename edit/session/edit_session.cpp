@@ -11,6 +11,7 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <system_error>
@@ -320,7 +321,8 @@ void EditSession::show(const Json& request) {
     if (request.contains("frame")) {
         const double frame = number_member(request, "frame");
         const std::optional<FrameRange> frames = frames_of(scene_->scene.whole());
-        if (!frames || !(frame >= frames->first && frame <= frames->last))
+        if (!frames || !(frame >= frames->first && frame <= frames->last) ||
+            frame != std::floor(frame))
             throw UsageError("frame: the scene has no such one");
         choice_.frame = static_cast<int>(frame);
     }
@@ -341,11 +343,6 @@ void EditSession::save(const Json& request) {
     const std::lock_guard lock(mutex_);
     const bool overwrites = flag_member(request, "overwrite", false);
     document();  // refuses to save what could not be read
-    disk_ = document_->disk_state();
-    if (disk_ == DiskState::changed && document_->is_unsaved() && !overwrites)
-        throw ConflictError(fmt::format(
-            "{}: changed on disk since it was read; reload it, overwrite it, or save as another",
-            file_.filename().string()));
     document_->save(overwrites ? Overwrite::yes : Overwrite::no);
     document_->end_group();
     disk_ = DiskState::same;
@@ -357,15 +354,6 @@ void EditSession::save_as(const Json& request) {
     const std::lock_guard lock(mutex_);
     const bool overwrites = flag_member(request, "overwrite", false);
     const std::filesystem::path file = file_.parent_path() / new_file_member(request);
-    // Writing would go through it, to wherever it leads.
-    std::error_code ignored;
-    if (file.filename() != file_.filename() &&
-        std::filesystem::is_symlink(std::filesystem::symlink_status(file, ignored)))
-        throw ConflictError(
-            fmt::format("{}: is a symbolic link; choose another name", file.filename().string()));
-    if (!overwrites && std::filesystem::exists(file))
-        throw ConflictError(fmt::format("{}: exists; choose another name, or overwrite it",
-                                        file.filename().string()));
     document();
     document_->save_as(file, overwrites ? Overwrite::yes : Overwrite::no);
     document_->end_group();

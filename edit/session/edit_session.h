@@ -25,11 +25,6 @@
 
 namespace uw {
 
-/// Reports, in one line, a request that was right, but not for the scene as it has become.
-class ConflictError : public std::runtime_error {
-    using std::runtime_error::runtime_error;
-};
-
 /// Something that windows are to be told of.
 struct Event {
     std::uint64_t number = 0;  // from 1

@@ -67,7 +67,7 @@ Json lamp_place_json(const LampDesc& lamp) {
 }
 
 // What a window asks of the search for a lamp's place (docs/edit-api.md). Throws UsageError where
-// the request is malformed, or names lamps that are not in `scene`.
+// the request is malformed, makes no sense, or names lamps that are not in `scene`.
 SuggestRequest suggest_request(const Json& request, const ImageScene& scene) {
     SuggestRequest wanted;
     wanted.lamp = lamp_member(request, "lamp", scene);
@@ -84,6 +84,7 @@ SuggestRequest suggest_request(const Json& request, const ImageScene& scene) {
     const double samples = number_member(request, "samples", static_cast<double>(wanted.samples));
     if (!(samples >= 12 && samples <= 10000)) throw UsageError("samples: expected 12 to 10000");
     wanted.samples = static_cast<std::size_t>(samples);
+    check_suggest_request(wanted, scene.desc().lamps);
     return wanted;
 }
 

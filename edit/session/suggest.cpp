@@ -16,26 +16,6 @@ using Place = std::array<double, 3>;
 
 constexpr double k_finest_step = 0.01;  // [m]
 
-void check_request(const SuggestRequest& request, const std::vector<LampDesc>& lamps) {
-    const auto check = [](bool is_valid, const std::string& what) {
-        if (!is_valid) throw UsageError("suggest: " + what);
-    };
-    check(request.lamp < lamps.size(), "there is no such lamp");
-    check(!request.partner || (*request.partner < lamps.size() && *request.partner != request.lamp),
-          "the partner must be another lamp of the scene");
-    const auto has_place = [&](std::size_t lamp) { return !lamps[lamp].sun && !lamps[lamp].glow; };
-    check(has_place(request.lamp) && (!request.partner || has_place(*request.partner)),
-          "a sun and the light of a volume have no place to search for");
-    const Vector3 diagonal = request.to - request.from;
-    check(std::isfinite(glm::length(diagonal)) && glm::length(diagonal) > 0,
-          "give two different positions to search between");
-    check(request.distance > 0 && std::isfinite(request.distance),
-          "the target's distance must be greater than 0");
-    check(request.samples >= 12 && request.samples <= 10000, "samples must be from 12 to 10000");
-    check(request.least_light >= 0 && std::isfinite(request.least_light),
-          "the least light must not be negative");
-}
-
 Point3 position_at(const SuggestRequest& request, const Place& place) {
     Point3 position;
     for (int axis = 0; axis < 3; ++axis) {
@@ -229,13 +209,35 @@ class Search {
 
 }  // namespace
 
+void check_suggest_request(const SuggestRequest& request, const std::vector<LampDesc>& lamps) {
+    const auto check = [](bool is_valid, const std::string& what) {
+        if (!is_valid) throw UsageError("suggest: " + what);
+    };
+    check(request.lamp < lamps.size(), "there is no such lamp");
+    check(!request.partner || (*request.partner < lamps.size() && *request.partner != request.lamp),
+          "the partner must be another lamp of the scene");
+    const auto has_place = [&](std::size_t lamp) {
+        return !lamps[lamp].sun && !lamps[lamp].is_of_scene();
+    };
+    check(has_place(request.lamp) && (!request.partner || has_place(*request.partner)),
+          "a sun, the sky and the light of a volume have no place to search for");
+    const Vector3 diagonal = request.to - request.from;
+    check(std::isfinite(glm::length(diagonal)) && glm::length(diagonal) > 0,
+          "give two different positions to search between");
+    check(request.distance > 0 && std::isfinite(request.distance),
+          "the target's distance must be greater than 0");
+    check(request.samples >= 12 && request.samples <= 10000, "samples must be from 12 to 10000");
+    check(request.least_light >= 0 && std::isfinite(request.least_light),
+          "the least light must not be negative");
+}
+
 LampDesc mirrored_lamp(const LampDesc& lamp, const Affine& world_from_camera) {
     return at_mirrored_place(lamp, lamp, world_from_camera);
 }
 
 Suggestion suggest_position(TargetProbe& probe, const ImageScene& scene,
                             const SuggestRequest& request, const SuggestProgress& progress) {
-    check_request(request, scene.desc().lamps);
+    check_suggest_request(request, scene.desc().lamps);
     return Search(probe, scene, request, progress).run();
 }
 

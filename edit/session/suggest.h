@@ -61,10 +61,13 @@ struct Suggestion {
 /// Called after each position tried, with its map and best so far.
 using SuggestProgress = std::function<void(const Suggestion& so_far)>;
 
+/// Throws UsageError for a request that makes no sense among these lamps.
+void check_suggest_request(const SuggestRequest& request, const std::vector<LampDesc>& lamps);
+
 /// Tries positions on a grid, and then goes from the best of them along its axes, in steps halved
 /// where none is better, until they are below 1 cm or the request's positions are used up. The same
-/// request gives the same result. `probe` keeps what is rendered. Throws UsageError for a request
-/// that makes no sense, Interrupted, and as Renderer.
+/// request gives the same result. `probe` keeps what is rendered. Throws as check_suggest_request,
+/// Interrupted, and as Renderer.
 Suggestion suggest_position(TargetProbe& probe, const ImageScene& scene,
                             const SuggestRequest& request, const SuggestProgress& progress = {});
 

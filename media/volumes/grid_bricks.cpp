@@ -39,18 +39,28 @@ void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks)
 
 }  // namespace
 
+namespace {
+
+/// Sanitises the tiles of a node and of those below it.
+template <class Node>
+void sanitize_tiles(Node& node, GridIntake& total) {
+    for (auto tile = node.beginValueAll(); tile; ++tile) {
+        constexpr auto k_voxels = static_cast<std::int64_t>(Node::ChildNodeType::NUM_VOXELS);
+        const float value = tile.isValueOn() ? total.take(*tile, k_voxels) : 0.0F;
+        tile.setValue(value);
+        tile.setValueOn(value > 0);
+    }
+    if constexpr (Node::LEVEL > 1)
+        for (auto child = node.beginChildOn(); child; ++child) sanitize_tiles(*child, total);
+}
+
+}  // namespace
+
 GridIntake sanitize(openvdb::FloatTree& tree) {
     using Tree = openvdb::FloatTree;
     tree.root().setBackground(0.0F, /*updateChildNodes=*/false);
     GridIntake total;
-    auto tiles = tree.beginValueAll();
-    tiles.setMaxDepth(Tree::ValueAllIter::LEAF_DEPTH - 1);
-    for (; tiles; ++tiles) {
-        const auto voxels = static_cast<std::int64_t>(tiles.getVoxelCount());
-        const float value = tiles.isValueOn() ? total.take(*tiles, voxels) : 0.0F;
-        tiles.setValue(value);
-        tiles.setActiveState(value > 0);
-    }
+    sanitize_tiles(tree.root(), total);
     openvdb::tree::LeafManager<Tree> leaves(tree);
     std::vector<GridIntake> parts(
         leaves.leafCount());  // summed in order, so independent of threads

@@ -2,28 +2,97 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <utility>
 
 namespace uw {
+
+namespace {
+
+constexpr int k_root_bits = 12;  // of the edge of a root's block
+static_assert(nanovdb::NanoUpper<nanovdb::Fp16>::DIM == 1 << k_root_bits);
+constexpr int k_first_voxel = -(1 << 30);  // NanoGrid's limit
+constexpr unsigned k_key_bits = 20;        // per axis
+
+std::uint64_t key_of(const nanovdb::Coord& voxel) {
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        key = key << k_key_bits |
+              static_cast<std::uint64_t>(std::int64_t{voxel[axis]} - k_first_voxel) >> k_root_bits;
+    return key;
+}
+
+/// The key of the block of 2^level times the edge that holds it.
+std::uint64_t key_above(std::uint64_t key, unsigned level) {
+    std::uint64_t above = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+        const unsigned shift = static_cast<unsigned>(axis) * k_key_bits;
+        above = above << k_key_bits | (key >> shift & ((1U << k_key_bits) - 1)) >> level;
+    }
+    return above;
+}
+
+}  // namespace
+
+RootBlocks::RootBlocks(const Grid& grid) {
+    const auto& root = *grid.tree().root().data();
+    for (std::uint32_t n = 0; n < root.mTableSize; ++n) {
+        const auto& tile = *root.tile(n);
+        entries_.push_back({key_of(tile.origin()), tile.value, tile.isChild()});
+    }
+    std::ranges::sort(entries_, {}, &Entry::key);
+    for (unsigned level = 1; occupied_.empty() || occupied_.back().size() > 1; ++level) {
+        std::vector<std::uint64_t> keys;
+        for (const Entry& entry : entries_) keys.push_back(key_above(entry.key, level));
+        std::ranges::sort(keys);
+        keys.erase(std::ranges::unique(keys).begin(), keys.end());
+        occupied_.push_back(std::move(keys));
+    }
+}
+
+bool RootBlocks::are_many(const Grid& grid) {
+    constexpr std::uint32_t k_few = 8;  // around the origin
+    const auto& root = *grid.tree().root().data();
+    if (root.mTableSize > k_few) return true;
+    for (std::uint32_t n = 1; n < root.mTableSize; ++n)
+        for (int axis = 0; axis < 3; ++axis)
+            if (std::abs(std::int64_t{root.tile(n)->origin()[axis]} -
+                         root.tile(0)->origin()[axis]) > std::int64_t{k_few} << k_root_bits)
+                return true;
+    return false;
+}
+
+RootBlocks::Block RootBlocks::at(const nanovdb::Coord& voxel) const {
+    const std::uint64_t key = key_of(voxel);
+    const auto found = std::ranges::lower_bound(entries_, key, {}, &Entry::key);
+    if (found != entries_.end() && found->key == key)
+        return {1 << k_root_bits, found->value, found->has_nodes};
+    unsigned level = 0;
+    while (level < occupied_.size() &&
+           !std::ranges::binary_search(occupied_[level], key_above(key, level + 1)))
+        ++level;
+    return {1 << (k_root_bits + static_cast<int>(level)), 0, false};
+}
 
 bool CellReader::find(unsigned side) {
     static constexpr std::array<std::uint16_t, k_edge * k_edge * k_edge> k_zeros{};
     const auto offset = [&](unsigned bit) { return (side & bit) != 0 ? k_edge : 0; };
     const Coord voxel = low_.offsetBy(offset(4), offset(2), offset(1));
     known_ |= 1U << side;
-    const auto* leaf = accessor_.probeLeaf(voxel);
-    if (leaf != nullptr)
-        blocks_[side] = {leaf->data()->mCode, leaf->data()->mMinimum, leaf->data()->mQuantum};
+    const Leaf* const own = leaf(voxel);
+    if (own != nullptr)
+        blocks_[side] = {own->data()->mCode, own->data()->mMinimum, own->data()->mQuantum};
     else
-        blocks_[side] = {k_zeros.data(), accessor_.getValue(voxel), 0};
-    return leaf != nullptr;
+        blocks_[side] = {k_zeros.data(), value(voxel), 0};
+    return own != nullptr;
 }
 
 CellCorners CellReader::one_by_one(const Coord& cell) const {
     CellCorners::Four at_z{}, at_next_z{};
     for (int i = 0; i < 4; ++i) {
-        at_z[i] = accessor_.getValue(cell.offsetBy(i >> 1, i & 1, 0));
-        at_next_z[i] = accessor_.getValue(cell.offsetBy(i >> 1, i & 1, 1));
+        at_z[i] = value(cell.offsetBy(i >> 1, i & 1, 0));
+        at_next_z[i] = value(cell.offsetBy(i >> 1, i & 1, 1));
     }
     return {at_z, at_next_z};
 }

@@ -8,10 +8,44 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 #include "media/volumes/lattice_cell.h"
 
 namespace uw {
+
+/// What the root of a grid's tree has where: blocks of 4096^3 voxels that have nodes below them or
+/// one value, and emptiness between them, in blocks as large as it allows. NanoVDB's accessor looks
+/// through the root's whole table for each voxel outside the nodes at hand, and knows no empty
+/// block larger than a root's: with it, a line through a few voxels that lie far apart, or through
+/// many blocks of one value, would take as long as the grid is wide.
+class RootBlocks {
+  public:
+    using Grid = nanovdb::NanoGrid<nanovdb::Fp16>;
+
+    explicit RootBlocks(const Grid& grid);
+
+    /// Whether the root has so many blocks, or so far apart, that this is worth its while.
+    static bool are_many(const Grid& grid);
+
+    struct Block {
+        int edge = 0;  // [voxels], a power of two, at a multiple of which it begins
+        float value = 0;
+        bool has_nodes = false;  // below it, which have the values
+    };
+    Block at(const nanovdb::Coord& voxel) const;
+
+  private:
+    struct Entry {
+        std::uint64_t key = 0;
+        float value = 0;
+        bool has_nodes = false;
+    };
+    std::vector<Entry> entries_;  // by key
+    // The blocks of twice, four times ... the edge that are not empty, up to the one that holds
+    // all.
+    std::vector<std::vector<std::uint64_t>> occupied_;
+};
 
 /// Reads the corners of cells that follow each other along a line: neighbours mostly lie in the
 /// same block of 8^3 voxels, and those at its faces share the blocks beside it.
@@ -19,12 +53,15 @@ class CellReader {
   public:
     using Build = nanovdb::Fp16;
     using Grid = nanovdb::NanoGrid<Build>;
+    using Leaf = nanovdb::NanoLeaf<Build>;
     using Accessor = nanovdb::ReadAccessor<Build, 0, 1, 2>;
     using Coord = nanovdb::Coord;
     static constexpr int k_edge = nanovdb::NanoLeaf<Build>::DIM;  // of a block [voxels]
     static_assert(k_edge == 8);
 
-    explicit CellReader(const void* grid) : accessor_(*static_cast<const Grid*>(grid)) {}
+    /// `roots`: null if the grid's root has but a few blocks; else must outlive this object.
+    CellReader(const void* grid, const RootBlocks* roots)
+        : accessor_(*static_cast<const Grid*>(grid)), roots_(roots) {}
 
     /// Whether the cell's lowest corner lies in a block, whose cells `in_block` then reads.
     bool enter(const Coord& cell) {
@@ -36,7 +73,24 @@ class CellReader {
         }
         return in_block_;
     }
-    const Accessor& accessor() const { return accessor_; }
+    /// The block of 8^3 voxels that has a voxel; null where a larger one has one value.
+    const Leaf* leaf(const Coord& voxel) const {
+        if (roots_ != nullptr && !root_block(voxel).has_nodes) return nullptr;
+        return accessor_.probeLeaf(voxel);
+    }
+    float value(const Coord& voxel) const {
+        if (roots_ != nullptr)
+            if (const RootBlocks::Block& block = root_block(voxel); !block.has_nodes)
+                return block.value;
+        return accessor_.getValue(voxel);
+    }
+    /// The edge of the block of one value that holds a voxel without a leaf.
+    int edge(const Coord& voxel) const {
+        if (roots_ != nullptr)
+            if (const RootBlocks::Block& block = root_block(voxel); !block.has_nodes)
+                return block.edge;
+        return static_cast<int>(accessor_.getDim(voxel, 0));
+    }
     /// The first cell of the block that was entered last.
     const Coord& low() const { return low_; }
 
@@ -103,7 +157,18 @@ class CellReader {
     static constexpr std::array<unsigned, 8> k_sides{0x01, 0x03, 0x05, 0x0f,
                                                      0x11, 0x33, 0x55, 0xff};
 
+    const RootBlocks::Block& root_block(const Coord& voxel) const {
+        if ((voxel & ~(root_block_.edge - 1)) != root_low_ || root_block_.edge == 0) {
+            root_block_ = roots_->at(voxel);
+            root_low_ = voxel & ~(root_block_.edge - 1);
+        }
+        return root_block_;
+    }
+
     Accessor accessor_;
+    const RootBlocks* roots_ = nullptr;
+    mutable RootBlocks::Block root_block_;  // the last one found, and where it begins
+    mutable Coord root_low_{std::numeric_limits<int>::max()};
     Coord low_{std::numeric_limits<int>::max()};
     bool in_block_ = false;
     // The block entered, and those that follow it: [4 dx + 2 dy + dz].
@@ -202,7 +267,7 @@ class LatticeWalk {
             return t_;
         }
         t_ = std::max(t_, exit);
-        const bool one_cell = high[0] - low[0] == 1;
+        const bool one_cell = high == low.offsetBy(1);
         for (int axis = 0; axis < 3; ++axis) {
             if (axis == exit_axis)
                 cell_[axis] = sign_[axis] > 0 ? high[axis] : low[axis] - 1;

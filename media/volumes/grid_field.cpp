@@ -58,6 +58,13 @@ double GridVolume::column(const Point3& a, const Point3& b) const {
     return sum * distance(a, b);
 }
 
+std::size_t GridVolume::regions_along(const Point3& a, const Point3& b) const {
+    const LatticeLine line = lattice_line(a, b - a);
+    std::size_t count = 0;
+    for (const NanoGrid& brick : bricks_) count += brick.regions_along(line);
+    return count;
+}
+
 namespace {
 
 // An interval is split if its halves are not much shorter than the least length.

@@ -50,13 +50,12 @@ namespace {
 
 using nanovdb::Coord;
 using Grid = CellReader::Grid;
-using Accessor = CellReader::Accessor;
 
 /// Samples consecutive points: neighbours in the same cell share its corners.
 class Sampler {
   public:
-    Sampler(const void* grid, const Bounds& support)
-        : reader_(grid),
+    Sampler(const void* grid, const RootBlocks* roots, const Bounds& support)
+        : reader_(grid, roots),
           min_(support.min),
           max_(support.max),
           low_(static_cast<int>(min_.x), static_cast<int>(min_.y), static_cast<int>(min_.z)) {}
@@ -84,32 +83,49 @@ class Sampler {
 
 /// The grid's contents around a cell, and the box of cells that share them.
 struct Region {
-    enum class Kind { constant, leaf, cell };
-    Kind kind = Kind::cell;
+    enum class Kind { constant, leaf, cells };
+    Kind kind = Kind::cells;
     float value = 0;        // constant
     Coord low{0}, high{0};  // cells [low, high)
 };
 
-/// Cells whose eight corners lie in one tile are constant; a tile's last layer of cells touches its
-/// neighbours and is taken cell by cell, so that no dilated copy of the topology is needed.
-Region region_at(const Accessor& accessor, const Coord& cell) {
+/// The cells beside `cell` whose eight corners lie in the same tiles as its own. If the tiles have
+/// one value, these are constant; if not, they have the same corners, and are one layer thick
+/// across the faces between tiles. A line along such a face, however long, meets no more of them
+/// than tiles, and no dilated copy of the topology is needed. Beside a block it is the cell alone.
+Region between_tiles(const CellReader& reader, const Coord& cell) {
     Region region;
-    if (accessor.probeLeaf(cell) != nullptr) {
+    region.kind = Region::Kind::constant;
+    region.value = reader.value(cell);
+    region.low = Coord(std::numeric_limits<int>::min());
+    region.high = Coord(std::numeric_limits<int>::max());
+    for (int corner = 0; corner < 8; ++corner) {
+        const Coord offset(corner >> 2, corner >> 1 & 1, corner & 1), voxel = cell + offset;
+        if (reader.leaf(voxel) != nullptr) return {Region::Kind::cells, 0, cell, cell.offsetBy(1)};
+        const int dim = reader.edge(voxel);
+        const Coord first = (voxel & ~(dim - 1)) - offset;
+        region.low.maxComponent(first);
+        region.high.minComponent(first.offsetBy(dim));
+        if (reader.value(voxel) != region.value) region.kind = Region::Kind::cells;
+    }
+    return region;
+}
+
+Region region_at(const CellReader& reader, const Coord& cell) {
+    Region region;
+    if (reader.leaf(cell) != nullptr) {
         region.kind = Region::Kind::leaf;
         region.low = cell & ~(CellReader::k_edge - 1);
         region.high = region.low.offsetBy(CellReader::k_edge);
         return region;
     }
-    const int dim = static_cast<int>(accessor.getDim(cell, 0));
+    const int dim = reader.edge(cell);
     region.low = cell & ~(dim - 1);
     region.high = region.low.offsetBy(dim - 1);
-    if (cell[0] < region.high[0] && cell[1] < region.high[1] && cell[2] < region.high[2]) {
-        region.kind = Region::Kind::constant;
-        region.value = accessor.getValue(cell);
-        return region;
-    }
-    region.low = cell;
-    region.high = cell.offsetBy(1);
+    if (cell[0] == region.high[0] || cell[1] == region.high[1] || cell[2] == region.high[2])
+        return between_tiles(reader, cell);
+    region.kind = Region::Kind::constant;
+    region.value = reader.value(cell);
     return region;
 }
 
@@ -132,21 +148,23 @@ NanoGrid::NanoGrid(std::shared_ptr<const void> storage, const void* grid, std::s
         support_.min[axis] = min[at] - 1.0;
         support_.max[axis] = max[at] + 1.0;
     }
+    const Grid& typed = *static_cast<const Grid*>(grid_);
+    if (RootBlocks::are_many(typed)) roots_ = std::make_shared<const RootBlocks>(typed);
 }
 
 double NanoGrid::sample(const Point3& p) const {
-    return Sampler(grid_, support_)(p);
+    return Sampler(grid_, roots_.get(), support_)(p);
 }
 
 void NanoGrid::add_samples(const LatticeLine& line, std::span<const double> t,
                            std::span<double> values) const {
-    Sampler sampler(grid_, support_);
+    Sampler sampler(grid_, roots_.get(), support_);
     for (std::size_t n = 0; n < t.size(); ++n)
         values[n] += sampler(line.origin + t[n] * line.direction);
 }
 
 double NanoGrid::integrate(const LatticeLine& line) const {
-    CellReader reader(grid_);
+    CellReader reader(grid_, roots_.get());
     LineIntegral line_integral(line);
     double integral = 0;
     LatticeWalk walk(line, 0, 1, support_);
@@ -158,7 +176,7 @@ double NanoGrid::integrate(const LatticeLine& line) const {
             if (end > begin) integral += line_integral.over_block(reader, begin, end);
             continue;
         }
-        const Region region = region_at(reader.accessor(), cell);
+        const Region region = region_at(reader, cell);
         const double end = walk.leave(region.low, region.high);
         if (region.kind == Region::Kind::constant) {
             integral += static_cast<double>(region.value) * (end - begin);
@@ -169,17 +187,27 @@ double NanoGrid::integrate(const LatticeLine& line) const {
     return integral;
 }
 
+std::size_t NanoGrid::regions_along(const LatticeLine& line) const {
+    const CellReader reader(grid_, roots_.get());
+    std::size_t count = 0;
+    for (LatticeWalk walk(line, 0, 1, support_); !walk.done(); ++count) {
+        const Region region = region_at(reader, walk.cell());
+        walk.leave(region.low, region.high);
+    }
+    return count;
+}
+
 void NanoGrid::append_stretches(const LatticeLine& line, double begin, double end,
                                 std::vector<GridStretch>& stretches) const {
-    CellReader reader(grid_);
+    CellReader reader(grid_, roots_.get());
     const std::size_t first = stretches.size();
     LatticeWalk walk(line, begin, end, support_);
     while (!walk.done()) {
         const Coord cell = walk.cell();
-        const Region region = region_at(reader.accessor(), cell);
+        const Region region = region_at(reader, cell);
         const bool constant = region.kind == Region::Kind::constant;
         const bool empty = (constant && region.value == 0) ||
-                           (region.kind == Region::Kind::cell && reader.corners(cell).zero());
+                           (region.kind == Region::Kind::cells && reader.corners(cell).zero());
         const double from = walk.t();
         const double to = walk.leave(region.low, region.high);
         if (!empty) append(stretches, first, {from, to, constant});

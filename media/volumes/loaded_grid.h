@@ -71,6 +71,8 @@ struct GridStretch {
     bool constant = false;      // one value throughout
 };
 
+class RootBlocks;
+
 /// One sparse grid of 16-bit quantised values (NanoVDB, Fp16: within a block of 8^3 voxels the
 /// error is at most 1/131070 of the block's range), interpolated trilinearly, zero outside. Works
 /// in lattice space, where the value of voxel (i, j, k) sits at (i, j, k). Thread safe.
@@ -94,6 +96,9 @@ class NanoGrid {
                      std::span<double> values) const;
     /// The exact integral of the interpolated value over t in [0, 1], in units of t.
     double integrate(const LatticeLine& line) const;
+    /// How many regions the line meets at t in [0, 1], by which the work of integrate() grows:
+    /// blocks of 8^3 voxels, larger ones of one value, and layers of cells between these.
+    std::size_t regions_along(const LatticeLine& line) const;
     /// Appends the intervals of [begin, end] outside which the value is exactly zero; ascending,
     /// disjoint, with adjacent ones of the same kind merged.
     void append_stretches(const LatticeLine& line, double begin, double end,
@@ -105,6 +110,7 @@ class NanoGrid {
   private:
     std::shared_ptr<const void> storage_;
     const void* grid_;
+    std::shared_ptr<const RootBlocks> roots_;  // null for a few
     std::size_t bytes_;
     Bounds support_;
 };

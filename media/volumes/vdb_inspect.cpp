@@ -41,13 +41,23 @@ std::string text_of(const openvdb::math::Vec3<T>& v) {
                        static_cast<double>(v.z()));
 }
 
-/// Calls `take(number, voxels)` for all active values.
-void for_each_value(const openvdb::GridBase& grid,
-                    const std::function<void(double number, std::int64_t voxels)>& take) {
-    grid.apply<ReadableGrids>([&](const auto& typed) {
-        for (auto value = typed.tree().cbeginValueOn(); value; ++value)
-            take(number_of(*value), static_cast<std::int64_t>(value.getVoxelCount()));
-    });
+using TakeValue = std::function<void(double number, std::int64_t voxels)>;
+
+/// Calls `take` for all active values of a node and of those below it. OpenVDB's own iterators of
+/// whole trees take time that grows with the square of the root's tiles.
+template <class Node>
+void for_each_value(const Node& node, const TakeValue& take) {
+    std::int64_t voxels = 1;
+    if constexpr (Node::LEVEL > 0)
+        voxels = static_cast<std::int64_t>(Node::ChildNodeType::NUM_VOXELS);
+    for (auto value = node.cbeginValueOn(); value; ++value) take(number_of(*value), voxels);
+    if constexpr (Node::LEVEL > 0)
+        for (auto child = node.cbeginChildOn(); child; ++child) for_each_value(*child, take);
+}
+
+void for_each_value(const openvdb::GridBase& grid, const TakeValue& take) {
+    grid.apply<ReadableGrids>(
+        [&](const auto& typed) { for_each_value(typed.tree().root(), take); });
 }
 
 void set_background(const openvdb::GridBase& grid, ValueSummary& summary) {

@@ -27,7 +27,8 @@ export class PictureView {
     #planes;
     #snapshot = null; // {image, planes, gains, revision}
     #factors = {}; // of brightness sliders that are being moved, by lamp name
-    #oldStops = null; // the exposure, where another is to be chosen for the next picture of all light
+    #medium = null; // what the water and its light were when the exposure was chosen
+    #outdated = null; // {stops, revision}: the exposure until there is a picture of that revision
     #drawSoon;
 
     /** `actions` as those of LampHandles, but for redraw. */
@@ -50,6 +51,7 @@ export class PictureView {
         this.#split = new SplitBar(this.#box, settings);
         this.#listenToResets();
         new ResizeObserver(this.#drawSoon).observe(place);
+        scene.observe((state) => this.#watchMedium(state));
         scene.observe(this.#drawSoon);
         settings.observe(this.#drawSoon);
     }
@@ -67,14 +69,9 @@ export class PictureView {
     }
 
     setImage(image) {
-        // Of the first picture of all light most is still missing: another exposure suits the next.
-        if (this.#oldStops !== null && image.quality !== "first" &&
-            image.revision === this.#scene.value.revision) {
-            if (this.#settings.value.stops === this.#oldStops) this.#settings.update({ stops: null });
-            this.#oldStops = null;
-        }
         this.#image = image;
         this.#planes.upload(image);
+        this.#exposeIfDue();
         this.#drawSoon();
     }
 
@@ -101,10 +98,6 @@ export class PictureView {
         this.#settings.update({ stops: automaticStops(this.#image, this.#mix(this.#image)) });
     }
 
-    /** Chooses the exposure anew for the next picture of all light, unless the user does before. */
-    exposeNext() {
-        this.#oldStops = this.#settings.value.stops;
-    }
 
     /** Keeps the picture at hand for the split view. Exposure and layer apply to both. */
     keepSnapshot() {
@@ -122,6 +115,28 @@ export class PictureView {
         this.#snapshot?.planes.free();
         this.#snapshot = null;
         this.#settings.update({ split: { ...this.#settings.value.split, on: false } });
+    }
+
+    /** Other water, or more of its light, makes another picture: an exposure that suits the old one
+        may show nothing of it. Lamps are compared at the same exposure. */
+    #watchMedium({ revision, water, volumes, light }) {
+        const medium = JSON.stringify([water, volumes.map((each) => each.concentrations), light]);
+        if (this.#medium !== null && medium !== this.#medium) this.#exposeFrom(revision);
+        this.#medium = medium;
+    }
+
+    /** Chooses the exposure anew for the picture of a revision, unless the user does before. */
+    #exposeFrom(revision) {
+        this.#outdated = { stops: this.#settings.value.stops, revision };
+        this.#exposeIfDue();
+    }
+
+    #exposeIfDue() {
+        // Of the first picture of all light most is still missing: another exposure suits the next.
+        if (this.#outdated === null || !this.#image || this.#image.quality === "first" ||
+            this.#image.revision < this.#outdated.revision) return;
+        if (this.#settings.value.stops === this.#outdated.stops) this.#settings.update({ stops: null });
+        this.#outdated = null;
     }
 
     #listenToResets() {
@@ -150,6 +165,7 @@ export class PictureView {
 
     #fit() {
         const { width, height } = this.#scene.value.image;
+        this.#place.style.setProperty("--picture-aspect", `${width} / ${height}`);
         const room = this.#place.getBoundingClientRect();
         const scale = Math.max(Math.min(room.width / width, room.height / height), 0.01);
         const shown = [Math.floor(width * scale), Math.floor(height * scale)];
@@ -175,7 +191,7 @@ export class PictureView {
         if (!this.#image) return;
         if (stops === null) {
             this.chooseExposure();
-            if (this.#image.quality === "first") this.exposeNext();
+            if (this.#image.quality === "first") this.#exposeFrom(this.#image.revision);
             return;
         }
         const from = splits ? split.at : 0;

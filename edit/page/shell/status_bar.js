@@ -3,7 +3,11 @@
 import { h, setText } from "../base/dom.js";
 
 const REFUSAL_SECONDS = 12;
-const STAGES = { first: "light scattered once; all light follows" };
+// The pictures by their names in the API.
+const PICTURES = {
+    first: "light scattered once", small: "small draft", draft: "draft",
+    "full-draft": "full-size draft", final: "final picture",
+};
 
 export class StatusBar {
     #message;
@@ -47,11 +51,12 @@ export class StatusBar {
     showProgress({ stage, fraction }) {
         this.#progress.hidden = fraction >= 1;
         this.#progress.value = fraction;
-        setText(this.#stage, fraction >= 1 ? "" : `computing ${STAGES[stage] ?? stage}`);
+        setText(this.#stage, fraction >= 1 ? "" : `computing: ${PICTURES[stage]}`);
     }
 
     showImage({ width, height, quality }) {
         this.#progress.hidden = true;
-        setText(this.#stage, `${width}×${height}, ${STAGES[quality] ?? quality}`);
+        setText(this.#stage, `${width}×${height}, ${PICTURES[quality]}${
+            quality === "first" ? "; all light follows" : ""}`);
     }
 }

@@ -49,6 +49,25 @@ TEST_F(VdbAdviceTest, MapsTheLikeliest) {
     EXPECT_EQ(namesakes.map, (GridNames{"density[0]", "density[1]"}));
 }
 
+/// The number of pictures does not depend on the file, and whoever waits hears of each.
+TEST_F(VdbAdviceTest, WorkIsBoundedAndTold) {
+    test::VdbFixture apart = cube("density", 1e-3);
+    apart.boxes = {{{0, 0, 0}, {0, 0, 0}, 1}, {{999'999, 0, 0}, {999'999, 0, 0}, 1}};
+    test::write_fixture(dir_ / "a.vdb", {apart});
+    std::vector<double> told;
+    const VdbAdvice advice = advise_on_vdb(inspect_vdb(dir_ / "a.vdb", "here"), "a.vdb",
+                                           [&](double done, const std::string& next) {
+                                               EXPECT_FALSE(next.empty());
+                                               told.push_back(done);
+                                           });
+    EXPECT_FALSE(advice.map.empty());
+    EXPECT_GE(told.size(), 4U);
+    EXPECT_LE(told.size(), 34U);  // both waters, all drafts and pictures of each
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    EXPECT_GE(told.front(), 0);
+    EXPECT_LE(told.back(), 1);
+}
+
 TEST_F(VdbAdviceTest, WithoutAConcentrationThereIsNoBlock) {
     const VdbAdvice advice = advise({cube("shadow")});
     EXPECT_TRUE(advice.map.empty());

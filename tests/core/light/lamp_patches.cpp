@@ -7,11 +7,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <numbers>
 #include <vector>
 
 #include "core/light/lamp_factory.h"
+#include "core/light/patch_profile.h"
 #include "core/light/surface_lighting.h"
 #include "tests/support/paths/closed_form_surfaces.h"
 
@@ -192,6 +194,69 @@ TEST(LampPatches, AreMirroredAsOneSurface) {
         // The smoother the metal, the more of the points is left: 23, 11 and 3.5 %.
         EXPECT_LT(worst, roughness < 0.1 ? 0.25 : 0.15) << roughness;
     }
+}
+
+/// The mean over a disk across z, evenly, or a sphere, as dense as 1 / sqrt(R^2 - r^2).
+double mean_over(LampExtentDesc::Shape shape, double radius,
+                 const std::function<double(const Vector3&)>& value) {
+    constexpr int k_fine = 32;
+    double sum = 0, weights = 0;
+    for (int i = 0; i < k_fine; ++i)
+        for (int j = 0; j < k_fine; ++j) {
+            const double u = (i + 0.5) / k_fine, angle = 2 * pi * (j + 0.5) / k_fine;
+            if (shape == LampExtentDesc::Shape::disk) {
+                const double r = radius * std::sqrt(u);
+                sum += value({r * std::cos(angle), r * std::sin(angle), 0});
+                weights += 1;
+                continue;
+            }
+            const double z = 2 * u - 1, across = std::sqrt(1 - z * z);
+            for (int k = 0; k < k_fine; ++k) {
+                // r = R sin t: the density times r^2 dr is in proportion to sin^2 t dt.
+                const double sine = std::sin(0.5 * pi * (k + 0.5) / k_fine), r = radius * sine;
+                sum += sine * sine *
+                       value(r * Vector3(across * std::cos(angle), across * std::sin(angle), z));
+                weights += sine * sine;
+            }
+        }
+    return sum / weights;
+}
+
+/// A wide lamp with the profile of a spot has one soft edge, that of all of its places together: by
+/// its points alone each would draw an edge of its own. Against quadrature over disk and sphere.
+TEST(LampPatches, ASpotsEdgeIsThatOfTheWholeLamp) {
+    for (const double edge : {0.0, 3.0})
+        for (const auto shape : {LampExtentDesc::Shape::disk, LampExtentDesc::Shape::sphere}) {
+            LampDesc desc = lamp_of({shape, 0, 0, 0, 0.3, 16});
+            desc.profile = SpotProfileDesc{.beam = 50, .edge = edge};
+            desc.direction = {0, 0, 1};
+            const std::vector<Lamp> points = points_of(desc);
+            std::vector<std::string> warnings;
+            const Lamp whole = make_lamp(desc, {}, std::vector<double>{540}, warnings);
+            double before = 1;
+            for (double x = 0; x < 2.0; x += 0.1) {
+                const Point3 at{x, 0.1, 2};
+                // 16 pixels of 4 samples, as they would see the same place.
+                double seen = 0;
+                for (int pixel = 0; pixel < 16; ++pixel)
+                    for (int s = 0; s < 4; ++s) {
+                        SurfaceSample sample;
+                        sample.hit.position = at;
+                        sample.x = pixel + 0.25 + 0.5 * (s % 2);
+                        sample.y = 0.25 + 0.5 * (s / 2);
+                        for (const Lamp& point : points)
+                            seen += point.share() * relative_intensity_towards(point, sample) / 64;
+                    }
+                const double expected = mean_over(shape, 0.3, [&](const Vector3& place) {
+                    return whole.relative_intensity(from_origin(at) - place);
+                });
+                // Each pixel takes eight places of each part for each of four samples; where a hard
+                // edge crosses a third of the parts, the mean of 16 pixels is uncertain by 0.003.
+                EXPECT_NEAR(seen, expected, 0.012) << x << " " << edge;
+                EXPECT_LT(seen, before + 0.01) << x;  // one edge, no lobes
+                before = seen;
+            }
+        }
 }
 
 }  // namespace

@@ -165,9 +165,10 @@ class Page:
     def pump(self, seconds):
         self._browser.pump(seconds)
 
-    def resize(self, width, height):
+    def resize(self, width, height, mobile=False):
+        """A mobile screen shows a page that is wider than itself smaller, as telephones do."""
         self.command("Emulation.setDeviceMetricsOverride", width=width, height=height,
-                     deviceScaleFactor=1, mobile=False)
+                     deviceScaleFactor=1, mobile=mobile)
 
     def prefer(self, scheme):
         """dark or light."""

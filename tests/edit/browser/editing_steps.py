@@ -210,10 +210,10 @@ class EditingSteps(unittest.TestCase):
         # The browser's console names the answer with status 422.
         self.page.complaints = [c for c in self.page.complaints if "422" not in c]
 
-    def choose(self, key, value):
+    def choose(self, key, value, form="#lamp-form"):
         """Chooses an entry of the form's list of that key."""
         self.page.evaluate(f"""(() => {{
-            const list = document.querySelector('#lamp-form select[data-key="{key}"]');
+            const list = document.querySelector('{form} select[data-key="{key}"]');
             list.value = {value!r};
             list.dispatchEvent(new Event('change'));
         }})()""")
@@ -264,6 +264,74 @@ class EditingSteps(unittest.TestCase):
         self.page.wait(f"{self.view.DRAWN}?.quality === 'final' && "
                        f"{self.view.DRAWN}.revision === {self.view.state('revision')}")
         self.assertLess(float(self.page.evaluate(f"document.querySelector('{shown}').value")), single)
+
+    def test_other_water_is_exposed_anew(self):
+        """Through other water the picture is as bright as it is when the page is opened with it."""
+        bright = self.view.canvas().brightness()
+        self.page.click("#tab-water")
+        for step in (lambda: self.choose("water.preset", "jerlov-5C", "#water-form"),
+                     lambda: self.page.key("z", CTRL)):
+            step()
+            self.view.wait_final()
+            followed = self.view.canvas().brightness()
+            self.assertGreater(followed, 0.5 * bright)
+            self.page.key("a")
+            self.page.pump(0.2)
+            # The exposure was chosen from a small draft, in steps of a tenth of a stop (7 %).
+            self.assertAlmostEqual(followed / self.view.canvas().brightness(), 1, delta=0.1)
+
+    def test_layout_leaves_nothing_blank(self):
+        parts = "#toolbar, #banners, #picture, #splitter, #plans, #side, #status"
+        for width, height in ((390, 844), (768, 1024), (1280, 800)):
+            self.page.resize(width, height, mobile=width < 1000)
+            self.page.pump(0.3)
+            if self.screenshots:
+                self.page.screenshot(self.screenshots / f"test_layout_{width}.png")
+            # The page is as wide as the window, which shows it at its size.
+            self.assertEqual(self.page.evaluate(
+                "[visualViewport.scale, innerWidth, document.documentElement.scrollWidth]"),
+                [1, width, width])
+            # Every spot of it, down to its end, belongs to one of its parts.
+            blank = self.page.evaluate(f"""(() => {{
+                const blank = [];
+                const end = document.documentElement.scrollHeight;
+                for (let top = 0; top < end; top += innerHeight) {{
+                    scrollTo(0, top);
+                    for (let y = 3; y < innerHeight; y += 23)
+                        for (let x = 3; x < innerWidth; x += 23)
+                            if (!document.elementFromPoint(x, y)?.closest('{parts}'))
+                                blank.push([x, scrollY + y]);
+                }}
+                scrollTo(0, 0);
+                return blank;
+            }})()""")
+            self.assertEqual(blank, [], width)
+            # No control sticks out of the window, and the picture is as wide as its place.
+            outside = self.page.evaluate(
+                "[...document.querySelectorAll('button, input, select, summary')].filter(e => "
+                "e.checkVisibility() && (e.getBoundingClientRect().right > innerWidth + 0.5 || "
+                "e.getBoundingClientRect().left < -0.5)).map(e => e.outerHTML)")
+            self.assertEqual(outside, [], width)
+            _, _, *place = self.page.box("#picture")
+            _, _, *box = self.page.box(".picture-box")
+            self.assertGreater(max(box[0] / place[0], box[1] / place[1]), 0.97)
+            self.assertGreater(box[0], 0.55 * width)
+
+    def test_says_what_is_computed(self):
+        """In words, whatever the picture is called in the API."""
+        self.page.evaluate("""(() => {
+            window.said = new Set();
+            const place = document.querySelector('.status-stage');
+            new MutationObserver(() => window.said.add(place.textContent))
+                .observe(place, { childList: true, characterData: true, subtree: true });
+        })()""")
+        self.view.drag("spot", -40, 0)
+        self.view.wait_final()
+        said = [text for text in self.page.evaluate("[...window.said]") if text]
+        self.assertIn("320×180, final picture", said)
+        for text in said:
+            self.assertRegex(
+                text, r"^(computing: |\d+×\d+, )(small draft|draft|full-size draft|final picture)$")
 
     def test_slider_without_requests(self):
         before = self.view.canvas()

@@ -105,8 +105,9 @@ TEST_F(Documents, NoticeChangesByOtherPrograms) {
     EXPECT_EQ(document.disk_state(), DiskState::same) << "touched only";
     write_elsewhere(with_samples("9"));
     EXPECT_EQ(document.disk_state(), DiskState::changed);
-    EXPECT_NE(message_of<IoError>([&] { document.save(); }).find("changed by another program"),
-              std::string::npos);
+    EXPECT_NE(
+        message_of<ConflictError>([&] { document.save(); }).find("changed by another program"),
+        std::string::npos);
     EXPECT_EQ(file_bytes(file_), with_samples("9"));
     document.reload();
     EXPECT_EQ(document.scene().text(), with_samples("9"));
@@ -149,7 +150,7 @@ TEST_F(Documents, AreSavedUnderAnotherNameInTheirFolder) {
               }).find("own folder"),
               std::string::npos);
     const fs::path there = folder_.write("there.yaml", "x");
-    EXPECT_NE(message_of<IoError>([&] { document.save_as(there); }).find("there is such a file"),
+    EXPECT_NE(message_of<ConflictError>([&] { document.save_as(there); }).find("exists"),
               std::string::npos);
     EXPECT_EQ(file_bytes(there), "x");
     document.save_as(there, Overwrite::yes);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "media/volumes/grid_field.h"
@@ -153,6 +155,121 @@ TEST_F(NanoGridTest, OutsideItsStretchesAllIsZero) {
             }
         }
     }
+}
+
+/// What makes a line long without making the file large: voxels far apart, on the faces of blocks
+/// and beside them, blocks of one value or of two in turn, a few or many of them.
+std::vector<test::VdbFixture> hostile_fixtures() {
+    std::vector<test::VdbFixture> fixtures;
+    const auto add = [&](std::vector<test::VdbBox> boxes) {
+        fixtures.emplace_back().boxes = std::move(boxes);
+    };
+    const auto voxel = [](int i, int j, int k) { return test::VdbBox{{i, j, k}, {i, j, k}, 1}; };
+    for (const int far : {1000, 1'000'000, (1 << 30) - 2}) {
+        add({voxel(0, 0, 0), voxel(far, 0, 0)});
+        add({voxel(-far, -1, 4095), voxel(far, -1, 4095)});
+        add({voxel(-far, -far, -far), voxel(far, far, far)});
+    }
+    std::vector<test::VdbBox> dust, cube, chequered;
+    for (int n = 0; n < 60; ++n)
+        dust.push_back(voxel(n * 7919 % 1'000'003, n * 104'729 % 999'983, n * 31'337 % 999'979));
+    for (int i = 0; i < 12; ++i)
+        for (int j = 0; j < 12; ++j)
+            for (int k = 0; k < 12; ++k) {
+                const std::array<int, 3> low{4096 * i, 4096 * j, 4096 * k};
+                const std::array<int, 3> high{low[0] + 4095, low[1] + 4095, low[2] + 4095};
+                cube.push_back({low, high, 1});
+                chequered.push_back({low, high, 1.0 + (i + j + k) % 2});
+            }
+    add(dust);
+    add(cube);
+    add(chequered);
+    return fixtures;
+}
+
+/// The work of a line is that of the blocks and tiles that it meets, not of the voxels between: of
+/// a line along a face between tiles, too, and of emptiness however wide. A file of a few kilobytes
+/// would otherwise take minutes.
+TEST_F(NanoGridTest, TheWorkOfALineIsThatOfWhatTheFileHolds) {
+    for (const test::VdbFixture& fixture : hostile_fixtures()) {
+        const NanoGrid hostile = grid(fixture);
+        const Bounds& box = hostile.support();
+        const Vector3 size = box.max - box.min;
+        for (int axis = 0; axis < 3; ++axis)
+            for (const double u : {0.0, 1e-7, 0.3, 0.5, 1.0})
+                for (const double v : {0.0, 0.4, 0.5, 1.0}) {
+                    LatticeLine line{box.min, Vector3(0)};
+                    line.origin[(axis + 1) % 3] += u * size[(axis + 1) % 3];
+                    line.origin[(axis + 2) % 3] += v * size[(axis + 2) % 3];
+                    line.direction[axis] = size[axis];
+                    // Through emptiness a line meets some twenty blocks of doubling edges on the
+                    // way to each of the voxels near it, and layers between them; of the cubes
+                    // twelve and as many layers.
+                    EXPECT_LE(hostile.regions_along(line), 400U) << size[axis] << " " << u << v;
+                    std::vector<GridStretch> stretches;
+                    hostile.append_stretches(line, 0, 1, stretches);
+                    EXPECT_LE(stretches.size(), 200U);
+                }
+    }
+}
+
+/// The integral along a line over voxels far apart is that over each of them.
+TEST_F(NanoGridTest, EmptinessBetweenVoxelsAddsNothing) {
+    for (const int far : {5000, 1'000'000, (1 << 30) - 2}) {
+        test::VdbFixture two;
+        two.boxes = {{{-far, -1, 4095}, {-far, -1, 4095}, 1},
+                     {{far, -1, 4095}, {far, -1, 4095}, 3}};
+        const NanoGrid apart = grid(two);
+        // A tent of an area as large as the value, cut off axis.
+        for (const double beside : {0.0, 0.25, -0.5}) {
+            const LatticeLine line{{-far - 3.0, -1 + beside, 4095}, {2.0 * far + 6, 0, 0}};
+            EXPECT_NEAR(apart.integrate(line) * (2.0 * far + 6), 4 * (1 - std::abs(beside)),
+                        1e-6);  // rounding of coordinates of 1e9
+        }
+        EXPECT_EQ(apart.sample({0, 0, 0}), 0);
+        EXPECT_EQ(apart.sample({double(far), -1, 4095}), 3);
+    }
+}
+
+/// Between tiles of two values the interpolant is linear; along their faces it has one value.
+TEST_F(NanoGridTest, LayersBetweenTilesAreInterpolated) {
+    test::VdbFixture chequered;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            for (int k = 0; k < 3; ++k) {
+                const std::array<int, 3> low{4096 * i, 4096 * j, 4096 * k};
+                chequered.boxes.push_back(
+                    {low, {low[0] + 4095, low[1] + 4095, low[2] + 4095}, 1.0 + (i + j + k) % 2});
+            }
+    const NanoGrid tiles = grid(chequered);
+    EXPECT_EQ(tiles.sample({100, 4095.5, 100}), 1.5);
+    EXPECT_EQ(tiles.sample({100, 4095.25, 5000}), 2 - 0.25);
+    for (const double beside : {0.0, 0.25, 0.5})
+        for (const auto& [from, to] : std::vector<std::pair<Point3, Point3>>{
+                 {{0, 4095 + beside, 100}, {12287, 4095 + beside, 100}},
+                 {{0, 4095 + beside, 4095.5}, {12287, 4095 + beside, 4095.5}},
+                 {{10, 4000, 4095.5}, {12000, 4300, 4095.5}},
+                 {{0, 0, 0}, {12287, 12287, 12287}}}) {
+            const LatticeLine line{from, to - from};
+            // By Gauss points between all planes that the line crosses.
+            std::vector<double> knots{0, 1};
+            for (int axis = 0; axis < 3; ++axis)
+                for (int plane = 0; plane < 12288 && line.direction[axis] != 0; ++plane)
+                    if (plane % 4096 == 0 || plane % 4096 == 4095) {
+                        const double t = (plane - line.origin[axis]) / line.direction[axis];
+                        if (t > 0 && t < 1) knots.push_back(t);
+                    }
+            std::ranges::sort(knots);
+            double sum = 0;
+            for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
+                const double half = 0.5 * (knots[i + 1] - knots[i]), middle = knots[i] + half;
+                for (const double side : {-1.0, 1.0})
+                    sum +=
+                        half * tiles.sample(line.origin + (middle + side * half / std::sqrt(3.0)) *
+                                                              line.direction);
+            }
+            EXPECT_NEAR(tiles.integrate(line), sum, 1e-12);
+        }
 }
 
 TEST_F(NanoGridTest, SupportIsOneVoxelAroundTheValues) {
