@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/light/patch_profile.h"
 #include "core/light/ray_panels.h"
+#include "core/light/surface_lighting.h"
 
 namespace uw {
 

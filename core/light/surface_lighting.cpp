@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/numerics.h"
 #include "core/base/random.h"
-#include "core/light/patch_profile.h"
 
 namespace uw {
 
@@ -54,6 +53,18 @@ Point3 shadow_origin(const Lamp& emitter, const SurfaceSample& sample, std::size
     const double v = fraction(sample.y + shift.next() + steps * k_even_steps.v);
     const double w = fraction(5 * sample.x + 3 * sample.y + shift.next() + steps * k_even_steps.w);
     return emitter.origin_on_patch(sample.hit.position, {u, v, w});
+}
+
+double relative_intensity_towards(const Lamp& emitter, const SurfaceSample& sample) {
+    const Point3& x = sample.hit.position;
+    // Other profiles change little across a part.
+    if (!emitter.is_part() || emitter.sunlight() != nullptr || !emitter.has_even_core())
+        return emitter.relative_intensity(x - emitter.origin(x));
+    constexpr std::size_t k_places = 8;
+    double sum = 0;
+    for (std::size_t number = 0; number < k_places; ++number)
+        sum += emitter.relative_intensity(x - shadow_origin(emitter, sample, number));
+    return sum / k_places;
 }
 
 void brdf_for(const Lamp& emitter, const SurfaceReflection& reflection, const SurfaceSample& sample,
