@@ -12,8 +12,9 @@ void* address_in_fitting(const char* symbol) {
     const ModuleFunction found = load_function(least_squares_module::k_name, symbol);
     if (found.address == nullptr)
         throw UsageError(
-            fmt::format("fitting needs Ceres and OpenCV ({}); install the package uwvdb-fitting{}",
-                        found.fault, see_troubleshooting("Installing")));
+            fmt::format("fitting needs Ceres and OpenCV ({}); {}{}", found.fault,
+                        how_to_install("uwvdb-fitting", "libceres-dev and libopencv-calib3d-dev"),
+                        see_troubleshooting("Installing")));
     return found.address;
 }
 

@@ -4,7 +4,7 @@
 #include "core/image/pixel_image.h"
 #include "fuzz/fuzzing.h"
 
-// PNG and JPEG through the door by which textures come in: values are within 0..1.
+// PNG, JPEG and OpenEXR through the door by which textures come in: values are within 0..1.
 UWVDB_FUZZ(data, size) {
     using namespace uw;
     fuzz::parse([&] {

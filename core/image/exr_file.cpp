@@ -8,12 +8,15 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
+#include <OpenEXR/ImfInputPart.h>
 #include <OpenEXR/ImfIntAttribute.h>
 #include <OpenEXR/ImfMultiPartInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfThreading.h>
+#include <OpenEXR/ImfTileDescription.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,8 +26,11 @@
 #include <cstdint>
 #include <exception>
 #include <fstream>
+#include <istream>
 #include <limits>
+#include <new>
 #include <span>
+#include <streambuf>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -141,12 +147,11 @@ bool take_name(std::istream& in, bool& is_empty) {
 
 }  // namespace
 
-bool exr_attributes_fit(const std::filesystem::path& file) {
-    std::error_code error;
-    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
-    std::ifstream in = open_own_file(file);
+namespace {
+
+bool attributes_fit(std::istream& in, std::int64_t bytes) {
     std::uint32_t magic = 0, version = 0;
-    if (error || !take(in, magic) || !take(in, version)) return false;
+    if (!take(in, magic) || !take(in, version)) return false;
     constexpr std::uint32_t k_several_parts = 0x1000;
     for (;;) {
         bool is_end = false, is_untyped = false;
@@ -160,6 +165,15 @@ bool exr_attributes_fit(const std::filesystem::path& file) {
         if (size < 0 || size > bytes - in.tellg()) return false;
         in.seekg(size, std::ios::cur);
     }
+}
+
+}  // namespace
+
+bool exr_attributes_fit(const std::filesystem::path& file) {
+    std::error_code error;
+    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, error));
+    std::ifstream in = open_own_file(file);
+    return !error && attributes_fit(in, bytes);
 }
 
 namespace {
@@ -339,6 +353,145 @@ void write_exr_file(OutputFile& out, const Film& film, const ExrHeader& header) 
         }
     } catch (const Iex::BaseExc& error) {
         throw IoError(fmt::format("{}: cannot write: {}", out.path().string(), error.what()));
+    }
+}
+
+namespace {
+
+/// A file in memory, as the standard library reads it.
+class MemoryBuffer : public std::streambuf {
+  public:
+    explicit MemoryBuffer(std::span<const std::byte> bytes) {
+        // The get area is never written to.
+        char* const begin = const_cast<char*>(reinterpret_cast<const char*>(bytes.data()));
+        setg(begin, begin, begin + bytes.size());
+    }
+
+  protected:
+    pos_type seekoff(off_type offset, std::ios::seekdir from, std::ios::openmode which) override {
+        const off_type base = from == std::ios::beg   ? 0
+                              : from == std::ios::cur ? gptr() - eback()
+                                                      : egptr() - eback();
+        return seekpos(base + offset, which);
+    }
+    pos_type seekpos(pos_type position, std::ios::openmode /*which*/) override {
+        if (position < 0 || position > egptr() - eback()) return pos_type(off_type(-1));
+        setg(eback(), eback() + static_cast<off_type>(position), egptr());
+        return position;
+    }
+};
+
+/// The same, as OpenEXR reads it.
+class ExrMemory : public Imf::IStream {
+  public:
+    explicit ExrMemory(std::span<const std::byte> bytes) : IStream("image"), bytes_(bytes) {}
+    bool read(char into[], int count) override {
+        const auto wanted = static_cast<std::size_t>(count);
+        if (count < 0 || wanted > bytes_.size() - at_) throw Iex::InputExc("the file is truncated");
+        std::copy_n(reinterpret_cast<const char*>(bytes_.data()) + at_, wanted, into);
+        at_ += wanted;
+        return at_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return at_; }
+    void seekg(std::uint64_t position) override {
+        if (position > bytes_.size()) throw Iex::InputExc("the file is truncated");
+        at_ = position;
+    }
+
+  private:
+    std::span<const std::byte> bytes_;
+    std::size_t at_ = 0;
+};
+
+/// Red, green and blue, or grey, and alpha; else the first channels of those that there are.
+std::vector<std::string> channels_to_read(const Imf::ChannelList& all) {
+    const auto has = [&](const char* name) { return all.findChannel(name) != nullptr; };
+    std::vector<std::string> names;
+    if (has("R") && has("G") && has("B")) {
+        names = {"R", "G", "B"};
+    } else if (has("Y")) {
+        names = {"Y"};
+    } else {
+        for (auto at = all.begin(); at != all.end(); ++at)
+            if (std::string_view(at.name()) != "A") names.emplace_back(at.name());
+        if (names.empty()) return {"A"};
+        names.resize(names.size() < 3 ? 1 : 3);
+    }
+    if (has("A")) names.emplace_back("A");
+    return names;
+}
+
+/// Throws InputError for what is not read, before anything is allocated for it.
+void check_exr(const Imf::Header& header, std::span<const std::string> channels,
+               std::size_t encoded_bytes, const std::string& name) {
+    const Imath::Box2i& window = header.dataWindow();
+    const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
+    const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
+    if (width < 1 || height < 1)
+        throw InputError(name + ": the image has no pixels; the file is damaged");
+    int count = 0;
+    for (auto at = header.channels().begin(); at != header.channels().end(); ++at) ++count;
+    check_image_size(width, height, std::max(1, count), encoded_bytes, name);
+    if (window != header.displayWindow() || (header.hasType() && Imf::isDeepData(header.type())))
+        throw InputError(name + ": not all of the image is stored, or it is deep; save it whole");
+    for (const std::string& channel : channels) {
+        const Imf::Channel* const found = header.channels().findChannel(channel);
+        if (found == nullptr || found->xSampling != 1 || found->ySampling != 1)
+            throw InputError(name +
+                             ": some of the channels are stored at a lower resolution; save red, "
+                             "green and blue instead of luminance and chroma");
+    }
+    if (!header.hasTileDescription()) return;
+    const Imf::TileDescription& tiles = header.tileDescription();
+    constexpr std::int64_t k_most_texels = std::int64_t{1} << 22;
+    if (std::int64_t{tiles.xSize} * tiles.ySize > std::max(k_most_texels, 4 * width * height))
+        throw InputError(name + ": its tiles are larger than the image; the file is damaged");
+}
+
+}  // namespace
+
+PixelImage read_exr(std::span<const std::byte> encoded, const std::string& name) {
+    const auto refuse = [&](std::string_view what) -> InputError {
+        return InputError(fmt::format("{}: cannot read the OpenEXR image: {}; save it again", name,
+                                      what.substr(0, what.find('\n'))));
+    };
+    MemoryBuffer buffer(encoded);
+    std::istream in(&buffer);
+    if (!attributes_fit(in, static_cast<std::int64_t>(encoded.size())))
+        throw refuse("the file is truncated or damaged");
+    try {
+        ExrMemory memory(encoded);
+        constexpr int k_no_threads = 0;
+        constexpr bool k_restore_offsets = false;
+        Imf::MultiPartInputFile input(memory, k_no_threads, k_restore_offsets);
+        const Imf::Header& header = input.header(0);
+        const std::vector<std::string> channels = channels_to_read(header.channels());
+        check_exr(header, channels, encoded.size(), name);
+        const Imath::Box2i& window = header.dataWindow();
+        PixelImage image{window.max.x - window.min.x + 1,
+                         window.max.y - window.min.y + 1,
+                         static_cast<int>(channels.size()),
+                         {},
+                         true};
+        const auto width = static_cast<std::size_t>(image.width);
+        image.pixels.resize(width * static_cast<std::size_t>(image.height) * channels.size());
+        const std::size_t step = sizeof(float) * channels.size();
+        Imf::FrameBuffer frame;
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            frame.insert(channels[c],
+                         Imf::Slice::Make(Imf::FLOAT, &image.pixels[c], window.min, image.width,
+                                          image.height, step, step * width));
+        Imf::InputPart part(input, 0);
+        part.setFrameBuffer(frame);
+        for (int y = window.min.y; y <= window.max.y; y += k_lines_at_once) {
+            throw_if_stopped();
+            part.readPixels(y, std::min(y + k_lines_at_once - 1, window.max.y));
+        }
+        return image;
+    } catch (const Iex::BaseExc& error) {
+        throw refuse(error.what());
+    } catch (const std::bad_alloc&) {
+        throw refuse("it takes more memory than there is");
     }
 }
 

@@ -72,6 +72,11 @@ bool is_stored_with(ExrOptions::Precision precision, std::span<const ExrChannel>
 /// else may be wrong is left to OpenEXR. False if the file cannot be read.
 bool exr_attributes_fit(const std::filesystem::path& file);
 
+/// Decodes an OpenEXR in memory, of several parts the first: red, green and blue, or one channel,
+/// and alpha if there is one. Values are as they are in the file. Messages call it `name`. Throws
+/// InputError if it is damaged or too large, if it is deep, or if not all of it is stored.
+PixelImage read_exr(std::span<const std::byte> encoded, const std::string& name);
+
 /// The header of an OpenEXR file of one part, stored by scanlines from the top.
 struct ExrHeader {
     int width = 0, height = 0;         // of the whole image, the display window

@@ -63,8 +63,10 @@ PixelImage read_linear_image(const std::filesystem::path& file) {
     if (!image.is_linear)
         throw InputError(
             file.string() +
-            ": not an image of linear floating-point values; save it as OpenEXR, or as "
-            "TIFF or Radiance HDR");
+            ": not an image of linear floating-point values; PNG, JPEG and other whole numbers "
+            "hold "
+            "nothing above white, and not in proportion to light: convert what it was made from to "
+            ".exr or .hdr, or to a TIFF of floats");
     return image;
 }
 

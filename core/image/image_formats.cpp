@@ -10,11 +10,13 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "core/base/error.h"
 #include "core/base/input_files.h"
 #include "core/base/troubleshooting.h"
+#include "core/image/exr_file.h"
 #include "core/image/loaded_module.h"
 
 namespace uw {
@@ -24,6 +26,8 @@ namespace {
 constexpr std::array<std::string_view, 13> k_endings{".png", ".jpg", ".jpeg", ".tif", ".tiff",
                                                      ".exr", ".hdr", ".pic",  ".bmp", ".webp",
                                                      ".psd", ".tga", ".tx"};
+
+constexpr const char* k_openexr = "openexr";  // its reader's name
 
 std::string ending_of(const std::filesystem::path& file) {
     std::string ending = file.extension().string();
@@ -50,7 +54,7 @@ std::optional<ImageFormat> other_image_format(std::span<const std::byte> encoded
     const auto begins = [&](std::string_view magic) { return has_at(encoded, 0, magic); };
     if (begins("II*\0"sv) || begins("MM\0*"sv) || begins("II+\0"sv) || begins("MM\0+"sv))
         return ImageFormat{"TIFF", "tiff"};
-    if (begins("\x76\x2f\x31\x01"sv)) return ImageFormat{"OpenEXR", "openexr"};
+    if (begins("\x76\x2f\x31\x01"sv)) return ImageFormat{"OpenEXR", k_openexr};
     if (begins("#?RADIANCE"sv) || begins("#?RGBE"sv)) return ImageFormat{"Radiance HDR", "hdr"};
     if (begins("8BPS"sv)) return ImageFormat{"PSD", "psd"};
     if (begins("RIFF"sv) && has_at(encoded, 8, "WEBP"sv)) return ImageFormat{"WebP", "webp"};
@@ -66,7 +70,16 @@ bool has_ending_of_image(const std::filesystem::path& file) {
 namespace {
 
 constexpr const char* k_module = "uwvdb_image_formats";
-constexpr const char* k_package = "uwvdb-image-formats";
+std::string how_to_install_module() {
+    return how_to_install("uwvdb-image-formats", "libopenimageio-dev");
+}
+
+PixelImage in_range(ImageRange range, PixelImage image) {
+    if (range == ImageRange::any) return image;
+    for (float& value : image.pixels)
+        value = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 1.0F);
+    return image;
+}
 
 bool is_stopped() {
     try {
@@ -81,12 +94,14 @@ bool is_stopped() {
 
 PixelImage read_other_image(std::span<const std::byte> encoded, const ImageFormat& format,
                             const std::string& name, ImageRange range) {
+    if (std::string_view(format.reader) == k_openexr)
+        return in_range(range, read_exr(encoded, name));
     static const ModuleFunction module = load_function(k_module, k_decode_image);
     if (module.address == nullptr)
-        throw InputError(fmt::format(
-            "{}: a {} image needs OpenImageIO ({}); install the package {}, or save it as PNG or "
-            "JPEG{}",
-            name, format.name, module.fault, k_package, see_troubleshooting("Installing")));
+        throw InputError(fmt::format("{}: {} images need OpenImageIO ({}); {}; or save it as {}{}",
+                                     name, format.name, module.fault, how_to_install_module(),
+                                     range == ImageRange::any ? "OpenEXR" : "OpenEXR, PNG or JPEG",
+                                     see_troubleshooting("Installing")));
     return decode_other_image(*reinterpret_cast<DecodeImage*>(module.address), encoded, format,
                               name, range);
 }
@@ -115,10 +130,7 @@ PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> en
     if (!fault.empty())
         throw InputError(fmt::format("{}: cannot read the {} image: {}; save it again, or as PNG",
                                      name, format.name, fault));
-    if (range == ImageRange::any) return image;
-    for (float& value : image.pixels)
-        value = std::isnan(value) ? 0.0F : std::clamp(value, 0.0F, 1.0F);
-    return image;
+    return in_range(range, std::move(image));
 }
 
 std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::path& file,
@@ -128,7 +140,7 @@ std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::pa
     in.read(reinterpret_cast<char*>(beginning.data()), beginning.size());
     const auto format = other_image_format(beginning, file.string());
     if (!format || (std::string_view(format->reader) != "tiff" &&
-                    std::string_view(format->reader) != "openexr"))
+                    std::string_view(format->reader) != k_openexr))
         return nullptr;
     static const ModuleFunction module = load_function(k_module, k_open_parts);
     if (module.address == nullptr) return nullptr;  // whoever reads the whole will say so
@@ -223,10 +235,10 @@ std::string output_endings() {
 
 void require_writer(const OutputFormat& format) {
     if (format.library != Library::openimageio || encoder().address != nullptr) return;
-    throw UsageError(
-        fmt::format("a {} file needs OpenImageIO ({}); install the package {}, or give a name that "
-                    "ends in .exr, .png or .jpg{}",
-                    format.name, encoder().fault, k_package, see_troubleshooting("Installing")));
+    throw UsageError(fmt::format(
+        "{} files need OpenImageIO ({}); {}; or give a name that ends in .exr, .png or "
+        ".jpg{}",
+        format.name, encoder().fault, how_to_install_module(), see_troubleshooting("Installing")));
 }
 
 void write_other_image(OutputFile& out, const OutputFormat& format, const ImageValues& image) {

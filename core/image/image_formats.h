@@ -17,7 +17,8 @@
 namespace uw {
 
 /// The formats of image files, and those that OpenImageIO decodes and encodes for us, in a module
-/// that is loaded when the first such image is met: all but OpenEXR, PNG and JPEG.
+/// that is loaded when the first such image is met: all but OpenEXR, PNG and JPEG. Parts of a large
+/// OpenEXR are read by it, too.
 
 /// A format that is read, by what it is called and by OpenImageIO's name of its reader.
 struct ImageFormat {
@@ -37,8 +38,8 @@ bool has_ending_of_image(const std::filesystem::path& file);
 /// light or lengths stay as they are, and may be anything.
 enum class ImageRange { unit, any };
 
-/// Decodes an image; messages call it `name`. Floating-point values are linear. Throws InputError
-/// if it is damaged, too large, or if there is no module.
+/// Decodes an OpenEXR, or another image by the module; messages call it `name`. Floating-point
+/// values are linear. Throws InputError if it is damaged, too large, or if there is no module.
 PixelImage read_other_image(std::span<const std::byte> encoded, const ImageFormat& format,
                             const std::string& name, ImageRange range = ImageRange::unit);
 

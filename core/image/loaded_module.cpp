@@ -35,4 +35,11 @@ ModuleFunction load_function(const char* name, const char* symbol) {
     return {nullptr, fmt::format("the module {} is not installed", name)};
 }
 
+std::string how_to_install(std::string_view package, std::string_view development) {
+    return fmt::format(
+        "install the package {}, or, of a program built from source, {}, and run cmake and the "
+        "build again",
+        package, development);
+}
+
 }  // namespace uw

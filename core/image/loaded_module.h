@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace uw {
 
@@ -14,6 +15,10 @@ struct ModuleFunction {
     void* address = nullptr;
     std::string fault;
 };
+
+/// What to do where a module is not there, for a message: it comes with the package `package`, and
+/// a build from source has it where `development` is installed when CMake looks.
+std::string how_to_install(std::string_view package, std::string_view development);
 
 /// The function `symbol` of the module `name`, which stays loaded until the program ends.
 ModuleFunction load_function(const char* name, const char* symbol);

@@ -60,6 +60,46 @@ TEST_F(OtherTextures, AreReadByAProgramThatIsFoundAlongPath) {
     EXPECT_TRUE(exists("out.exr"));
 }
 
+// OpenEXR is the program's own: it needs no module, for textures as for skies.
+TEST_F(OtherTextures, InOpenExrNeedNoModule) {
+    std::filesystem::copy_file(UWVDB_PROGRAM, folder_ / "alone");
+    const auto render_alone = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments{"render",  "scene.yaml", "-o", "out.exr",
+                                           "--quiet", "--layers",   "all"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run_program(arguments, {.folder = folder_.path(), .program = folder_ / "alone"});
+    };
+    hang("exr");
+    const ImageFile truth = render();
+    const ProgramResult textured = render_alone({});
+    ASSERT_EQ(textured.exit_code, 0) << textured.err;
+    EXPECT_EQ(read_exr(folder_ / "out.exr").channels.at("R"), truth.channels.at("R"));
+
+    const std::string surface = "water.surface={height: 3, n: 1.34}";
+    write("sky.exr", encoded_image("exr", 8, 4, 3, std::vector<int>(96, 200)));
+    const ProgramResult lit =
+        render_alone({"--set", surface, "--set", "sky={model: panorama, file: sky.exr}"});
+    EXPECT_EQ(lit.exit_code, 0) << lit.err;
+}
+
+// Skies are brighter than white, and in proportion: what is made for the eye is no panorama.
+TEST_F(OtherTextures, MadeForTheEyeAreNoSkies) {
+    hang("png");
+    for (const std::string ending : {"png", "jpg"}) {
+        write("sky." + ending, encoded_image(ending, 8, 4, 3, std::vector<int>(96, 200)));
+        const ProgramResult result = run({"render", "scene.yaml", "-o", "out.exr", "--set",
+                                          "water.surface={height: 3, n: 1.34}", "--set",
+                                          "sky={model: panorama, file: sky." + ending + "}"});
+        EXPECT_EQ(result.exit_code, 3) << result.err;
+        EXPECT_NE(result.err.find("sky." + ending + ": not an image of linear"), std::string::npos)
+            << result.err;
+        EXPECT_NE(result.err.find("hold nothing above white"), std::string::npos);
+        EXPECT_NE(result.err.find("convert what it was made from to .exr or .hdr"),
+                  std::string::npos);
+        EXPECT_EQ(line_count(result.err), 1);
+    }
+}
+
 TEST_F(OtherTextures, AreRefusedWithoutTheModuleThatReadsThem) {
     hang("tif");
     // Its own place tells a program where its modules are.
@@ -68,9 +108,13 @@ TEST_F(OtherTextures, AreRefusedWithoutTheModuleThatReadsThem) {
         run_program({"render", "scene.yaml", "-o", "out.exr"},
                     {.folder = folder_.path(), .program = folder_ / "alone"});
     EXPECT_EQ(result.exit_code, 3) << result.err;
-    EXPECT_NE(result.err.find("picture.tif: a TIFF image needs OpenImageIO"), std::string::npos)
+    EXPECT_NE(result.err.find("picture.tif: TIFF images need OpenImageIO"), std::string::npos)
         << result.err;
+    // However the program came to be there.
     EXPECT_NE(result.err.find("install the package uwvdb-image-formats"), std::string::npos);
+    EXPECT_NE(result.err.find("of a program built from source, libopenimageio-dev"),
+              std::string::npos);
+    EXPECT_NE(result.err.find("or save it as OpenEXR, PNG or JPEG"), std::string::npos);
     EXPECT_EQ(line_count(result.err), 1);
     EXPECT_FALSE(exists("out.exr"));
 }

@@ -118,7 +118,7 @@ TEST_F(OutputFormats, AreRefusedInOneLine) {
         test::run_program({"render", "scene.yaml", "-o", "out.tif"},
                           {.folder = folder_.path(), .program = folder_ / "alone"});
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_NE(result.err.find("-o out.tif: a TIFF file needs OpenImageIO (the module "
+    EXPECT_NE(result.err.find("-o out.tif: TIFF files need OpenImageIO (the module "
                               "uwvdb_image_formats is not installed); install the package "
                               "uwvdb-image-formats"),
               std::string::npos)

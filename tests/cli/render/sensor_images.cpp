@@ -70,7 +70,7 @@ TEST_F(SensorImages, AreAllThatIsWrittenIfTheyAreRequested) {
     EXPECT_LT(sum / static_cast<double>(png.pixels.size()), 0.04);  // noise is costly to store
 }
 
-// An exposure a thousand times too long: each well is full. It is told of raw numbers and of what
+// An exposure far too long: each well is full. It is told of raw numbers and of what
 // is developed from them, and not of a picture that shows something.
 TEST_F(SensorImages, SayThatTheyAreSaturatedAllOver) {
     const std::string longer = "camera.sensor.exposure=1000";

@@ -202,6 +202,58 @@ TEST(ImageReader, LightAndLengthsAreReadAsTheyAre) {
     EXPECT_THROW(read_linear_image(folder.path() / "none.exr"), IoError);
 }
 
+// Cut off or damaged anywhere, an OpenEXR is refused with one line, or read as something else.
+TEST(ImageReader, OpenExrOfStrangersDoesNoHarm) {
+    const test::SceneFolder folder;
+    Film film(7, 5, {0, 0, 7, 5}, {"R", "G", "B", "A", "depth.Z"});
+    for (int y = 0; y < 5; ++y)
+        for (int x = 0; x < 7; ++x)
+            for (std::size_t c = 0; c < 5; ++c)
+                film.pixel(x, y)[c] = static_cast<float>(100 * static_cast<int>(c) + 10 * y + x);
+    const auto bytes_of = [&](const ExrOptions& options) {
+        write_exr(folder.path() / "a.exr", film, {}, options);
+        std::ifstream in(folder.path() / "a.exr", std::ios::binary);
+        return std::string{std::istreambuf_iterator<char>(in), {}};
+    };
+    using enum ExrOptions::Precision;
+    for (const ExrOptions& options :
+         {ExrOptions{half, ExrCompression::none}, ExrOptions{single, ExrCompression::zip}}) {
+        const std::string whole = bytes_of(options);
+        const PixelImage image = read_image(encoded_bytes(whole), "a.exr");
+        ASSERT_EQ(image.channels, 4);  // not the depth
+        const PixelImage light = read_linear_image(folder.path() / "a.exr");
+        for (int y = 0; y < 5; ++y)
+            for (int x = 0; x < 7; ++x)
+                for (std::size_t c = 0; c < 4; ++c)
+                    EXPECT_EQ(light.pixels[static_cast<std::size_t>(4 * (7 * y + x)) + c],
+                              film.pixel(x, y)[c]);
+        const auto try_to_read = [](const std::string& bytes) {
+            try {
+                read_image(encoded_bytes(bytes), "a.exr");
+                return true;
+            } catch (const InputError& error) {
+                EXPECT_TRUE(std::string(error.what()).starts_with("a.exr: ")) << error.what();
+                EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+                return false;
+            }
+        };
+        for (std::size_t size = 4; size < whole.size(); ++size)
+            EXPECT_FALSE(try_to_read(whole.substr(0, size))) << size;
+        for (std::size_t at = 4; at < whole.size(); ++at)
+            for (const char other : {'\xff', '\x00', '\x7f'}) {
+                std::string damaged = whole;
+                damaged[at] = other;
+                try_to_read(damaged);
+            }
+    }
+    // Of which a part alone is stored.
+    write_exr(folder.path() / "part.exr", Film(7, 5, {1, 1, 7, 5}, {"R", "G", "B", "A"}), {});
+    EXPECT_NE(test::message_of<InputError>([&] {
+                  read_image(folder.path() / "part.exr");
+              }).find("not all of the image is stored"),
+              std::string::npos);
+}
+
 TEST(ImageReader, RefusesOtherImagesThatAreDamaged) {
     for (const std::string format : {"tif", "exr", "hdr", "bmp", "tga", "webp"}) {
         std::vector<int> noise;
