@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/image/development.h"
 #include "render/image_header.h"
+#include "render/light_points.h"
 
 namespace uw {
 
@@ -88,6 +89,15 @@ RenderOptions rendered_for(const WantedImage& wanted, const CameraDesc& camera) 
     return options;
 }
 
+// What the image leaves out, in one line; empty: little.
+std::string light_note_of(Renderer& renderer) {
+    const auto left_out = renderer.light_left_out();
+    const AssembledScene& scene = renderer.assembled();
+    std::vector<std::string> notes = pointed_lamp_notes(scene, find_pointed_lamps(scene));
+    if (auto note = left_out_note(scene, left_out)) notes.insert(notes.begin(), std::move(*note));
+    return fmt::format("{}", fmt::join(notes, "; "));
+}
+
 }  // namespace
 
 void RunEngine::render(std::size_t place) {
@@ -102,7 +112,7 @@ void RunEngine::render(std::size_t place) {
     renderer_.prepare(options);
     std::string light_note;
     if (client_->reads_light_note() && !std::exchange(looked_for_light_, true))
-        light_note = left_out_note(renderer_.assembled(), renderer_.light_left_out()).value_or("");
+        light_note = light_note_of(renderer_);
     client_->loaded(place);
     warn_of_image();
     renderer_.render(options);

@@ -13,6 +13,7 @@
 #include "core/image/pixel_image.h"
 #include "core/light/lamp.h"
 #include "core/passes/path_pass.h"
+#include "render/light_points.h"
 
 namespace uw {
 
@@ -195,6 +196,8 @@ class AllLightTrial {
         const RenderOptions request{.layers = k_layers, .transport = &transport};
         const Film& film = renderer.render(request);
         error_ = renderer.report().multiple_error.value_or(0);
+        pointed_lamps_ =
+            pointed_lamp_notes(renderer.assembled(), find_pointed_lamps(renderer.assembled()));
         const LayerPlan plan = layer_plan(renderer.scene(), k_layers);
         pixels_ = draw_pixels(film.width(), film.height(), bands());
         result_.parts.resize(bands());
@@ -305,13 +308,15 @@ class AllLightTrial {
                         scene_.desc().camera.width, scene_.desc().camera.height, 100 * error_),
             fmt::format("compared at {} pixels drawn at random, with {} paths in each",
                         pixels_.size(), k_rounds * k_paths_of_round)};
+        for (std::string& line : pointed_lamps_) result_.notes.push_back(std::move(line));
     }
 
     ImageScene scene_;
     const ValidationOptions& options_;
     const TransportChange& under_test_;
     LightValidation result_;
-    double error_ = 0;  // stated by the fast form
+    double error_ = 0;                        // stated by the fast form
+    std::vector<std::string> pointed_lamps_;  // what both leave out
     std::vector<Pixel> pixels_;
     std::vector<double> fast_;  // by pixel, light and band
 };

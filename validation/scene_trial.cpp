@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/light/reference_integrator.h"
+#include "render/light_points.h"
 
 namespace uw {
 
@@ -83,6 +84,7 @@ class SceneTrial {
         if (varies()) mixed = homogenised(trial, scene_);
         TrialScene& uniform = mixed ? *mixed : trial;
         result_.smooth = smooth_pixels(uniform);
+        result_.notes = pointed_lamp_notes(trial.scene(), find_pointed_lamps(trial.scene()));
         compare_before_forward_scatter(trial, uniform);
         if (scene_.desc().water.forward_scatter.K > 0) compare_forward_scatter(trial, uniform);
         const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;

@@ -74,6 +74,7 @@ struct SceneValidation {
     std::map<std::string, MethodImage> images;
     std::vector<Check> checks;
     std::vector<PlanesStep> planes;
+    std::vector<std::string> notes;  // what all methods leave out, a line each
     double seconds = 0;
 
     bool passed() const;

@@ -15,6 +15,7 @@
 #include "core/base/text.h"
 #include "core/base/troubleshooting.h"
 #include "core/light/medium.h"
+#include "render/light_points.h"
 #include "render/scene_assembly.h"
 #include "render/scene_rendering.h"
 
@@ -345,6 +346,8 @@ SceneSurvey survey_scene(const AssembledScene& scene,
     survey.left_out = estimate_light_left_out(scene);
     if (const auto warning = left_out_note(scene, survey.left_out))
         survey.warnings.push_back(*warning);
+    for (std::string& note : pointed_lamp_notes(scene, find_pointed_lamps(scene)))
+        survey.warnings.push_back(std::move(note));
     return survey;
 }
 

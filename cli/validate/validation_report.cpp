@@ -115,7 +115,7 @@ std::string deviations_plot(const LightValidation& light) {
 std::string light_section(const LightValidation& light, const HtmlPictures& pictures) {
     std::string html =
         fmt::format("<h2>{}: {}</h2>\n<p>", light.name, verdict_html(light.passed()));
-    for (const std::string& line : light.notes) html += line + ". ";
+    for (const std::string& line : light.notes) html += xml_escaped(line) + ". ";
     html += fmt::format("{:.1f} s.</p>\n{}", light.seconds, checks_of(light).html());
     if (!light.parts.empty()) html += parts_of(light).html();
     for (const auto& [name, picture] : light.pictures) html += pictures.figure(picture, name);
@@ -264,6 +264,7 @@ std::string section_of(const SceneValidation& scene, HtmlPictures& pictures) {
     html += checks_of(scene).html();
     if (const std::string left = left_uncompared(scene); !left.empty())
         html += "<p>" + left + ".</p>\n";
+    for (const std::string& line : scene.notes) html += "<p>" + xml_escaped(line) + ".</p>\n";
     html += pictures_of(scene, k_before, "Pictures", pictures);
     html += pictures_of(scene, k_scattered, "Pictures with forward scatter", pictures);
     html +=
@@ -297,6 +298,7 @@ std::string validation_table(const SceneValidation& scene, bool colour) {
                                    scene.height, scene.seconds);
     text += checks_of(scene).text(colour);
     if (const std::string left = left_uncompared(scene); !left.empty()) text += "  " + left + "\n";
+    for (const std::string& line : scene.notes) text += "  " + line + "\n";
     text += "  planes against their limit:";
     for (const PlanesStep& step : scene.planes)
         text += step.order == 0 ? fmt::format(" N={} {:.2g}", step.count, step.error)

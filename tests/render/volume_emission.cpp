@@ -284,6 +284,38 @@ TEST(Glows, AreInEquilibriumInAFurnace) {
     }
 }
 
+// Where such a gas scatters, too, a = 2 and b = 1 per metre, what is not scattered is a / c = 2/3
+// of the blackbody, and what is scattered once, isotropically, b / c of that. Points bring less of
+// the latter, the fewer they are: docs/scene-file.md tells how much.
+TEST(Glows, AreTooDarkInAFurnaceThatScatters) {
+    const GlowFixture fixture;
+    VdbFixture grid;
+    grid.name = "flame";
+    grid.min = {0, 0, 0};
+    grid.max = {19, 19, 19};
+    grid.value = [](int, int, int) { return 1.0; };
+    grid.file_from_index = Affine::translation({-1.9, -1.9, -1.9}) * Affine::scale(Vector3(0.2));
+    EmissionDesc emission = flame({2, 2, 2});
+    VolumeDesc volume = fixture.volume(grid);
+    GridMappingDesc& gas = volume.grids.emplace_back();
+    gas.grid = "flame";
+    gas.optics =
+        GridMappingDesc::Optics{{2, 2, 2}, {1, 1, 1}, PhaseDesc{HenyeyGreensteinDesc{0}, "test"}};
+    SceneDesc desc = glowing(volume, emission);
+    desc.water.absorption = {0, 0, 0};
+    desc.water.scattering->b = {0, 0, 0};
+    double direct = 0, scattered = 0;
+    const std::vector<PixelResult> image = TestScene(desc).image();
+    for (const PixelResult& pixel : image) {
+        direct += pixel.direct[0] / static_cast<double>(image.size());
+        scattered += pixel.backscatter[0] / static_cast<double>(image.size());
+    }
+    // e^-6 is left at the faces, where the grid fades within a voxel.
+    EXPECT_NEAR(direct, 2.0 / 3, 3e-3);
+    EXPECT_NEAR(scattered, 0.017, 0.001);
+    EXPECT_LT(scattered, 2.0 / 9);
+}
+
 TEST(Glows, HaveANameOfTheirOwn) {
     SceneDesc desc = pinhole_scene(4, 3);
     VolumeDesc volume;
