@@ -29,11 +29,13 @@ class PhaseTransfer {
   public:
     explicit PhaseTransfer(const PhaseFunction& phase) {
         constexpr int k_steps = 240;
-        constexpr double k_narrowest = 1e-6;  // below which no phase function varies
+        constexpr double k_narrowest = 1e-6;  // below which phase functions are linear in psi^2
         const double growth = std::pow(k_widest_scattering / k_narrowest, 1.0 / k_steps);
         double begin = 0, end = k_narrowest;
         for (int step = 0; step <= k_steps; ++step) {
-            const double p = phase.evaluate(0.5 * (begin + end));
+            // Where p is linear in psi^2, its mean over the solid angle is halfway in that.
+            const double middle = step == 0 ? std::sqrt(0.5) * end : 0.5 * (begin + end);
+            const double p = phase.evaluate(middle);
             for (std::size_t i = 0; i < values_.size(); ++i) {
                 const double k = PointSpread::frequency(i);
                 values_[i] += 2 * std::numbers::pi * p / k *

@@ -244,7 +244,7 @@ TEST_F(DatasetImages, DisparityOfOtherPairsIsRefused) {
 TEST_F(DatasetImages, AreTheSensorsWhereThereIsOne) {
     const std::vector<std::string> sensor{
         "--set", "camera.lens={f_number: 2.8, focal_length: 0.006}", "--set",
-        "camera.sensor={exposure: 0.01, mosaic: rggb, "
+        "camera.sensor={exposure: 0.00001, mosaic: rggb, "
         "quantum_efficiency: {r: [0.5, 0.1, 0], g: [0.1, 0.5, 0.1], b: [0, 0.1, 0.5]}, full_well: "
         "20000, "
         "bit_depth: 12}"};

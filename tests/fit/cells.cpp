@@ -141,6 +141,7 @@ TEST_F(FitCellPredictions, LeaveOutWhatIsMasked) {
                 film.pixel(x, y)[c] = whole.pixels[static_cast<std::size_t>(4 * (y * 160 + x)) + c];
     film.pixel(3, 3)[k_alpha] = 0.5F;
     film.pixel(40, 3)[k_green] = std::nanf("");
+    file_ = "masked_1.exr";  // what was read is not replaced
     write_exr(folder_ / file_, film, {}, {ExrOptions::Precision::single});
     const PictureResiduals::Comparison seen = comparison(20);  // of 8 pixels
     ASSERT_EQ(seen.width, 20);

@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 
 #include "core/base/error.h"
+#include "core/scene/scene_context.h"
 #include "tests/support/field_maker.h"
 #include "tests/support/test_scene.h"
 
@@ -28,6 +30,10 @@ class Caches : public testing::Test {
         wall.file = maker_.dir / "wall.obj";
         desc_.geometry = {wall};
         desc_.water.scattering->phase.function = TabulatedPhaseDesc{maker_.dir / "phase.csv"};
+        // As its reader would have listed it.
+        desc_.files = {
+            {&*std::ranges::find(k_file_keys, "water.scattering.phase.file", &FileKey::path),
+             maker_.dir / "phase.csv"}};
     }
 
     void write(const char* name, const char* text) const {

@@ -24,10 +24,12 @@ class DatasetExamples : public test::DatasetTest {
     }
     /// What one of the programs prints about the set.
     std::string output_of(const std::string& program, const std::string& environment = "") const {
+        // The packages' Python has NumPy; another one may come before it in PATH.
         const std::string command =
             environment +
-            fmt::format("PYTHONDONTWRITEBYTECODE=1 python3 '{}/examples/datasets/{}' '{}' 2>&1",
-                        UWVDB_SOURCE_DIR, program, (folder_ / "set").string());
+            fmt::format(
+                "PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 '{}/examples/datasets/{}' '{}' 2>&1",
+                UWVDB_SOURCE_DIR, program, (folder_ / "set").string());
         FILE* const pipe = ::popen(command.c_str(), "r");
         std::string text;
         for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);

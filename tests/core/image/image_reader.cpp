@@ -210,18 +210,19 @@ TEST(ImageReader, OpenExrOfStrangersDoesNoHarm) {
         for (int x = 0; x < 7; ++x)
             for (std::size_t c = 0; c < 5; ++c)
                 film.pixel(x, y)[c] = static_cast<float>(100 * static_cast<int>(c) + 10 * y + x);
-    const auto bytes_of = [&](const ExrOptions& options) {
-        write_exr(folder.path() / "a.exr", film, {}, options);
-        std::ifstream in(folder.path() / "a.exr", std::ios::binary);
+    const auto bytes_of = [&](const ExrOptions& options, const char* name) {
+        write_exr(folder.path() / name, film, {}, options);
+        std::ifstream in(folder.path() / name, std::ios::binary);
         return std::string{std::istreambuf_iterator<char>(in), {}};
     };
     using enum ExrOptions::Precision;
-    for (const ExrOptions& options :
-         {ExrOptions{half, ExrCompression::none}, ExrOptions{single, ExrCompression::zip}}) {
-        const std::string whole = bytes_of(options);
+    for (const auto& [options, name] :
+         {std::pair{ExrOptions{half, ExrCompression::none}, "halves.exr"},
+          std::pair{ExrOptions{single, ExrCompression::zip}, "floats.exr"}}) {
+        const std::string whole = bytes_of(options, name);
         const PixelImage image = read_image(encoded_bytes(whole), "a.exr");
         ASSERT_EQ(image.channels, 4);  // not the depth
-        const PixelImage light = read_linear_image(folder.path() / "a.exr");
+        const PixelImage light = read_linear_image(folder.path() / name);
         for (int y = 0; y < 5; ++y)
             for (int x = 0; x < 7; ++x)
                 for (std::size_t c = 0; c < 4; ++c)

@@ -186,7 +186,7 @@ TEST(Layers, WhatCannotBeSuppliedIsLeftOutOrRefused) {
                   std::string("--layers: ") + name +
                       ": the scene is rendered with single scattering; write --set "
                       "render.scattering=multiple, or --integrator path");
-    EXPECT_NE(message_of<UsageError>("error").find("only --integrator path has a standard error"),
+    EXPECT_NE(message_of<UsageError>("error").find("only all light has a standard error"),
               std::string::npos);
     EXPECT_NE(message_of<UsageError>("order.2").find("written with --orders N"), std::string::npos);
     // Whether it is requested or not.

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "core/light/lamp_factory.h"
-#include "core/light/patch_profile.h"
 #include "core/light/surface_lighting.h"
 #include "tests/support/paths/closed_form_surfaces.h"
 
