@@ -17,9 +17,19 @@
 namespace uw::test {
 namespace {
 
-/// Water 2 m deep below a sun at 45 degrees, with `water` more keys; light of the surface is that
-/// of Fresnel.
-class NetIrradiance : public testing::TestWithParam<std::pair<const char*, std::string>> {
+struct Scattering {
+    const char* name;
+    std::string keys;
+    /// How closely the net irradiance is to be known, relative to the light from above. A fifth of
+    /// the light is scattered in the mean, of which three errors of 2.5e-3 are 4 %; where a steep
+    /// peak was lost, 60 % of it were missing. Broad functions have no peak to lose, and more
+    /// noise.
+    double most_error;
+};
+
+/// Water 2 m deep below a sun at 45 degrees that scatters so; light of the surface is that of
+/// Fresnel.
+class NetIrradiance : public testing::TestWithParam<Scattering> {
   protected:
     const AssembledScene& assembled() {
         const SceneDesc desc = read_scene(
@@ -32,7 +42,7 @@ class NetIrradiance : public testing::TestWithParam<std::pair<const char*, std::
                 "0}]\n"
                 "geometry: [{type: plane, point: [0, 0, 0], normal: [0, 1, 0], reflectance: 0}]\n"
                 "water: {surface: {height: 2, n: 1.34}, bands: [550], absorption: [0], " +
-                    GetParam().second + "}\n"),
+                    GetParam().keys + "}\n"),
             {});
         renderer_.set_scene(SceneDesc(desc));
         return renderer_.assemble();
@@ -59,8 +69,7 @@ TEST_P(NetIrradiance, IsTheSameAtAllDepths) {
     }
     const double error = std::hypot(nets[0].error, nets[1].error);
     EXPECT_NEAR(nets[1].mean, nets[0].mean, 3 * error) << nets[0].mean << " " << nets[1].mean;
-    // A fifth of the light is scattered in the mean; 2 % of that would show.
-    EXPECT_LT(error, 2e-3 * down);
+    EXPECT_LT(error, GetParam().most_error * down);
 }
 
 std::string phase(const std::string& function) {
@@ -69,15 +78,16 @@ std::string phase(const std::string& function) {
 
 INSTANTIATE_TEST_SUITE_P(
     Phases, NetIrradiance,
-    testing::Values(
-        std::pair{"Isotropic", phase("{type: hg, g: 0}")},
-        std::pair{"HenyeyGreenstein", phase("{type: hg, g: 0.924}")},
-        std::pair{"SteepHenyeyGreenstein", phase("{type: hg, g: 0.999}")},
-        std::pair{"FournierForand", phase("{type: fournier-forand, n: 1.1, mu: 3.5835}")},
-        std::pair{"SteepFournierForand", phase("{type: fournier-forand, n: 1.05, mu: 3.1}")},
-        std::pair{"Petzold", phase("{type: petzold}")},
-        std::pair{"Mixture", std::string("particles: {small: 0.05, large: 1}")}),
-    [](const auto& suite) { return std::string(suite.param.first); });
+    testing::Values(Scattering{"Isotropic", phase("{type: hg, g: 0}"), 6e-3},
+                    Scattering{"HenyeyGreenstein", phase("{type: hg, g: 0.924}"), 2.5e-3},
+                    Scattering{"SteepHenyeyGreenstein", phase("{type: hg, g: 0.999}"), 2.5e-3},
+                    Scattering{"FournierForand",
+                               phase("{type: fournier-forand, n: 1.1, mu: 3.5835}"), 2.5e-3},
+                    Scattering{"SteepFournierForand",
+                               phase("{type: fournier-forand, n: 1.05, mu: 3.1}"), 2.5e-3},
+                    Scattering{"Petzold", phase("{type: petzold}"), 2.5e-3},
+                    Scattering{"Mixture", "particles: {small: 0.05, large: 1}", 6e-3}),
+    [](const auto& suite) { return std::string(suite.param.name); });
 
 }  // namespace
 }  // namespace uw::test
