@@ -212,8 +212,8 @@ class MultipleLight {
 struct MultipleLight::Errors {
     Spectrum water;     // of what nodes tell of the water
     Spectrum surfaces;  // of the indirect light on surfaces, seen directly or through scattering
-    // Of what glossy surfaces mirror, by paths of the pixel's own: sums of their light and of its
-    // squares.
+    // Sums of the light that glossy surfaces mirror, and of its squares, by paths of the pixel's
+    // own.
     Spectrum mirrored, mirrored_squares;
     double mirrored_paths = 0;
 
@@ -307,8 +307,8 @@ double MultipleLight::share_of_glow(double scattered, double distance, std::size
     return mean > 0 ? std::min(1.0, scattered / mean) : 1;
 }
 
-// Of glow in water as it is in the mean, leaves what pixels of the node's ray have of it, where
-// that ray scatters light: nodes cannot hold any where it does not.
+// Reduces glow, which is that of mean water, to what pixels along the node's ray have of it: none
+// where that ray scatters no light, since nodes cannot hold any there.
 void MultipleLight::spread_glow(const MultipleNode& node, std::span<float> glow) const {
     const std::size_t values = estimator_.groups() * bands_;
     for (std::size_t k = 0; k < values; ++k) {

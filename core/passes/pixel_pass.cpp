@@ -38,7 +38,7 @@ class TileRenderer {
     const PixelResult& render(int x, int y);
 
   private:
-    /// Of a pixel of the tile, until the next is asked for.
+    /// The light scattered into the ray of a pixel of the tile; valid until the next call.
     std::span<const double> in_scatter(std::size_t pixel);
 
     const PixelRenderer& renderer_;

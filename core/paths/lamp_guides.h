@@ -44,8 +44,8 @@ class LampGuides {
         double attenuation = 0;      // mean, on the way [1/m]
         double albedo = 0;
         double scale = 0;  // of the radiance: intensity times squared depth over squared distance
-        // Of a sun, the irradiance of what the water scatters once, by any angle: next to its
-        // direction that has the shape of the phase function. 0 for all others.
+        // The irradiance of a sun's light that the water scatters once, by any angle, which has the
+        // shape of the phase function next to the sun's direction. 0 for all other lamps.
         double scattered_once = 0;
         LampField::Place place;
     };

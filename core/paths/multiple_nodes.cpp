@@ -99,7 +99,7 @@ class MultipleNodes::WaterSum final : public PathTerms {
         }
         w_.batch_mean[i] += share_ * mean;
         path_ += mean;
-        // Of surfaces, light that was looked up comes from no lamp.
+        // The light of a surface that was looked up comes from no lamp.
         if (is_lit_ && term.reflections > 0 && term.emitter == k_no_emitter)
             for (std::size_t b = 0; b < bands_; ++b)
                 w_.lit_indirect[b] += share_ * term.radiance[b];

@@ -32,7 +32,7 @@ class PathTracer {
     PathTracer(PathTracer&&) = delete;
     PathTracer& operator=(PathTracer&&) = delete;
 
-    /// Of the scene's medium.
+    /// The tables of the scene's medium.
     const ScatteringTables& scattering() const { return *scattering_; }
 
     /// Prepares a camera ray, with as many paths of each kind as seem worth it: `hit` is the first
