@@ -56,6 +56,9 @@ Lamp Lamp::emitter(std::size_t index, const Point3& position, double share,
     point.index_ = index;
     point.share_ = share;
     point.position_ = position;
+    if (point.is_part() && !sunlight_)
+        point.profile_ =
+            softened(profile_, patch->centre + patch->middle() - position, patch->covariance());
     return point;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -10,6 +11,8 @@
 namespace uw {
 
 namespace {
+
+constexpr int k_points_along = 8;  // for a patch's middle and covariance, to 2 % of the latter
 
 // Which r/R of a sphere of radius R a share `inside` of its light comes from. With r = R sin t, the
 // light within r is in proportion to t - sin t cos t, whose derivative is 2 sin^2 t.
@@ -60,6 +63,40 @@ Vector3 LampFrame::at(const UnitPoint& place) const {
 Vector3 LampPatch::at(const UnitPoint& place) const {
     return frame.at({begin.u + place.u * (end.u - begin.u), begin.v + place.v * (end.v - begin.v),
                      begin.w + place.w * (end.w - begin.w)});
+}
+
+namespace {
+
+// Calls `visit` with points that fill a patch evenly.
+void for_each_point(const LampPatch& patch, const std::function<void(const Vector3&)>& visit) {
+    const int deep = patch.frame.is_flat() ? 1 : k_points_along;
+    const auto place = [](int i, int count) { return (i + 0.5) / count; };
+    for (int i = 0; i < k_points_along; ++i)
+        for (int j = 0; j < k_points_along; ++j)
+            for (int k = 0; k < deep; ++k)
+                visit(
+                    patch.at({place(i, k_points_along), place(j, k_points_along), place(k, deep)}));
+}
+
+double count_of_points(const LampPatch& patch) {
+    return std::pow(k_points_along, patch.frame.is_flat() ? 2 : 3);
+}
+
+}  // namespace
+
+Vector3 LampPatch::middle() const {
+    Vector3 sum(0);
+    for_each_point(*this, [&](const Vector3& point) { sum += point; });
+    return sum / count_of_points(*this);
+}
+
+Matrix3 LampPatch::covariance() const {
+    const Vector3 middle = this->middle();
+    Matrix3 sum(0);
+    for_each_point(*this, [&](const Vector3& point) {
+        sum += glm::outerProduct(point - middle, point - middle);
+    });
+    return sum / count_of_points(*this);
 }
 
 namespace {

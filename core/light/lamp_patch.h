@@ -46,6 +46,10 @@ struct LampPatch {
 
     /// The point that belongs to a point of the unit cube, as seen from the surface's centre [m].
     Vector3 at(const UnitPoint& place) const;
+    /// The middle of its points, as seen from the surface's centre [m].
+    Vector3 middle() const;
+    /// The covariance of its points about that middle [m^2].
+    Matrix3 covariance() const;
 
     friend bool operator==(const LampPatch&, const LampPatch&) = default;
 };

@@ -137,7 +137,10 @@ SpotProfile::SpotProfile(const SpotProfileDesc& desc, const LampPlacement& place
 }
 
 double SpotProfile::relative_intensity(const Vector3& v) const {
-    const double cosine = glm::dot(v, axis_) / glm::length(v);
+    return of_cosine(glm::dot(v, axis_) / glm::length(v));
+}
+
+double SpotProfile::of_cosine(double cosine) const {
     if (cosine <= cos_dark_) return 0.0;
     const double core = falloff_ == Falloff::blender_3_4 ? cosine : 1.0;
     if (cosine >= cos_full_) return core;
@@ -146,6 +149,22 @@ double SpotProfile::relative_intensity(const Vector3& v) const {
     if (is_blenders(falloff_)) return core * smoothstep(ramp);
     const double angle = std::acos(glm::clamp(cosine, -1.0, 1.0));
     return smoothstep((dark_angle_ - angle) / (dark_angle_ - full_angle_));
+}
+
+double SpotProfile::at(double angle) const {
+    if (angle >= dark_angle_) return 0.0;
+    if (falloff_ != Falloff::smooth) return of_cosine(std::cos(angle));
+    if (angle <= full_angle_) return 1.0;
+    return smoothstep((dark_angle_ - angle) / (dark_angle_ - full_angle_));
+}
+
+SpotProfile SpotProfile::with_an_edge() const {
+    constexpr double k_min_width = 4e-6;
+    SpotProfile spot = *this;
+    if (dark_angle_ - full_angle_ >= k_min_width) return spot;
+    spot.full_angle_ = std::max(0.0, dark_angle_ - k_min_width);
+    spot.cos_full_ = std::cos(spot.full_angle_);
+    return spot;
 }
 
 double SpotProfile::solid_angle() const {
@@ -324,7 +343,8 @@ constexpr bool all_are_profiles(const std::variant<Profiles...>* /*type*/) {
     return (IsALampProfile<Profiles> && ...);
 }
 static_assert(all_are_profiles(static_cast<const LampProfile*>(nullptr)));
-static_assert(std::variant_size_v<LampProfile> == std::variant_size_v<LampProfileDesc>);
+static_assert(std::variant_size_v<LampProfile> ==
+              std::variant_size_v<LampProfileDesc> + 1);  // SoftSpotProfile has no description
 
 }  // namespace
 

@@ -113,6 +113,13 @@ class SpotProfile {
     SpotProfile(const SpotProfileDesc& desc, const LampPlacement& placement);
 
     double relative_intensity(const Vector3& v) const;
+    /// The same at an angle from its axis, 0 to pi [rad].
+    double at(double angle) const;
+    const Vector3& axis() const { return axis_; }
+    double dark_angle() const { return dark_angle_; }
+    double full_angle() const { return full_angle_; }
+    /// The same, but with an edge of a few millionths of a radian if it has none.
+    SpotProfile with_an_edge() const;
     double solid_angle() const;
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return falloff_ != SpotProfileDesc::Falloff::blender_3_4; }
@@ -123,6 +130,8 @@ class SpotProfile {
     friend bool operator==(const SpotProfile&, const SpotProfile&) = default;
 
   private:
+    double of_cosine(double cosine) const;
+
     Vector3 axis_;
     SpotProfileDesc::Falloff falloff_;
     double dark_angle_, cos_dark_;    // the spot is dark outside this angle [rad]
@@ -134,6 +143,53 @@ inline SpotProfile make_profile(const SpotProfileDesc& desc, const LampPlacement
                                 std::vector<std::string>& /*warnings*/) {
     return {desc, placement};
 }
+
+/// The profile of a spot whose light comes from all over a part of a luminous surface, or of a
+/// sphere, while it stands at one point (IsALampProfile): its edge is as soft as the part is wide.
+/// By their points alone all parts would draw an edge of their own, and all together steps, lobes
+/// and spikes in place of a soft edge.
+///
+/// Seen from a distance R, displacements of the source with a covariance C move the edge by angles
+/// with the variance u^T C u / R^2, where u is the direction across the edge. The edge keeps its
+/// shape (its falloff, if it has no width), is as wide as its own variance and that one together,
+/// and moves so that the flux at each distance stays that of the spot.
+class SoftSpotProfile {
+  public:
+    static constexpr std::string_view k_name = SpotProfile::k_name;
+
+    /// `offset`: from the point to the middle of its part [m]. `covariance`: of the places of the
+    /// part about that middle [m^2].
+    SoftSpotProfile(const SpotProfile& spot, const Vector3& offset, const Matrix3& covariance);
+
+    /// `v` has the length of the way from the point [m].
+    double relative_intensity(const Vector3& v) const;
+    double solid_angle() const { return spot_.solid_angle(); }
+    std::optional<double> peak_candelas() const { return std::nullopt; }
+    bool has_even_core() const { return false; }
+    DirectionCone cone() const;
+    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+                       std::vector<double>& s) const;
+
+    friend bool operator==(const SoftSpotProfile&, const SoftSpotProfile&) = default;
+
+  private:
+    struct Edge {
+        double mean, deviation;  // of the angle at which the light ends
+        double peak;             // the intensity inside it
+    };
+    /// The edge where displacements of the source move it by angles of this variance.
+    Edge edge(double displaced) const;
+
+    SpotProfile spot_;
+    Vector3 offset_;
+    Matrix3 covariance_;
+    // Of the angle at which the light ends, whose density is the negative slope of the profile.
+    double mean_, deviation_;
+    double dark_, full_;    // where the edge is dark and full, from the mean in standard deviations
+    double max_displaced_;  // the greatest variance by which a part blurs the edge [rad^2]
+    double cos_core_ = 2;   // at any distance it shines fully inside this angle; 2: nowhere
+    double cos_dark_;       // and is dark outside this one
+};
 
 /// The profile cos^m of the angle from the axis, 1/2 at fwhm/2 and 0 behind the lamp
 /// (IsALampProfile).
@@ -243,20 +299,25 @@ IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placeme
 
 /// All profiles, placed in the world: how a lamp's radiant intensity depends on direction. There is
 /// one for each alternative of LampProfileDesc, and beside it a function `make_profile` that
-/// constructs it from its description.
-using LampProfile =
-    std::variant<IsotropicProfile, SpotProfile, CosineProfile, TableProfile, IesProfile>;
+/// constructs it from its description; and soft ones for parts of lamps.
+using LampProfile = std::variant<IsotropicProfile, SpotProfile, SoftSpotProfile, CosineProfile,
+                                 TableProfile, IesProfile>;
 
 /// Makes the profile that `desc` describes. Reads the files it needs; adds warnings and throws as
 /// that profile's make_profile does.
 LampProfile make_lamp_profile(const LampProfileDesc& desc, const LampPlacement& placement,
                               std::vector<std::string>& warnings);
 
+/// The profile of a point that stands for a part of a lamp with an extent (`offset` and
+/// `covariance`: SoftSpotProfile). Those without a steep edge change too little across a part to
+/// differ.
+LampProfile softened(const LampProfile& profile, const Vector3& offset, const Matrix3& covariance);
+
 /// The requirements on a profile.
 ///
 /// - k_name: its name in reports ("spot").
-/// - relative_intensity(v): intensity in the direction of `v` (from the lamp, of any length),
-///   relative to that where the lamp is brightest: 0..1.
+/// - relative_intensity(v): intensity in the direction of `v` (from the lamp, of any length but for
+///   SoftSpotProfile), relative to that where the lamp is brightest: 0..1.
 /// - solid_angle(): the relative intensity integrated over the sphere [sr], the power of the lamp
 ///   for 1 W/sr where it is brightest.
 /// - peak_candelas(): luminous intensity where it is brightest [cd], if the profile is absolute.

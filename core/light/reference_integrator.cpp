@@ -307,8 +307,8 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
             const Point3 origin = lamp.origin(hit.position);
             const Vector3 v = origin - hit.position;
             const double r2 = glm::dot(v, v);
-            const double geometry_term = relative_intensity_towards(lamp, *samples[i]) *
-                                         lamp.focus(hit.position) * glm::dot(hit.normal, v) /
+            const double geometry_term = lamp.relative_intensity(-v) * lamp.focus(hit.position) *
+                                         glm::dot(hit.normal, v) /
                                          (lamp.spread(std::sqrt(r2)) * std::sqrt(r2));
             if (geometry_term <= 0 || glm::dot(hit.geometric_normal, v) <= 0) continue;
             double& share = light.visible_share(i, j);

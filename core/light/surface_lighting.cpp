@@ -55,18 +55,6 @@ Point3 shadow_origin(const Lamp& emitter, const SurfaceSample& sample, std::size
     return emitter.origin_on_patch(sample.hit.position, {u, v, w});
 }
 
-double relative_intensity_towards(const Lamp& emitter, const SurfaceSample& sample) {
-    const Point3& x = sample.hit.position;
-    // Other profiles change little across a part.
-    if (!emitter.is_part() || emitter.sunlight() != nullptr || !emitter.has_even_core())
-        return emitter.relative_intensity(x - emitter.origin(x));
-    constexpr std::size_t k_places = 8;
-    double sum = 0;
-    for (std::size_t number = 0; number < k_places; ++number)
-        sum += emitter.relative_intensity(x - shadow_origin(emitter, sample, number));
-    return sum / k_places;
-}
-
 void brdf_for(const Lamp& emitter, const SurfaceReflection& reflection, const SurfaceSample& sample,
               Spectrum& values) {
     if (!reflection.is_glossy()) {
@@ -253,8 +241,7 @@ struct Facing {
             // affects shading.
             const double towards = glm::dot(hit.normal, to_lamp);
             if (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
-            const double relative =
-                relative_intensity_towards(lamp, *all[i]) * lamp.focus(hit.position);
+            const double relative = lamp.relative_intensity(-to_lamp) * lamp.focus(hit.position);
             if (relative <= 0) continue;
             const double radius = glm::length(to_lamp);
             samples.push_back(i);

@@ -101,12 +101,6 @@ class SurfaceLight {
 /// samples of a pixel cover the part evenly, so that half-shades have no steps, and little noise.
 Point3 shadow_origin(const Lamp& emitter, const SurfaceSample& sample, std::size_t number);
 
-/// The relative intensity of an emitter towards a surface sample; of one that stands for a part of
-/// a lamp and has a profile with an edge, the mean over that part. By its point alone, each point
-/// of the lamp would draw an edge of its own, and all of them steps and lobes in place of a soft
-/// edge. The samples of a pixel cover the part evenly, as those of shadow_origin.
-double relative_intensity_towards(const Lamp& emitter, const SurfaceSample& sample);
-
 /// Finds what share each sample sees of the emitters that stand for parts of lamps, [sample *
 /// emitters + emitter]; leaves the others' as they are. One shadow ray decides, but for the samples
 /// of a pixel in which they disagree about a lamp: there it is k_half_shade_rays to each part.

@@ -62,8 +62,9 @@ ScatteringTables::ScatteringTables(const Medium& medium, const LampField::Finene
 }
 
 const LampField& ScatteringTables::field() const {
-    std::call_once(field_is_made_, [this] { field_ = make_field(); });
-    return field_;
+    const std::lock_guard lock(field_mutex_);
+    if (!field_) field_ = make_field();
+    return *field_;
 }
 
 LampField ScatteringTables::make_field() const {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,8 +49,8 @@ struct ScatteringTables {
 
     LampField::Fineness fineness_;
     double least_albedo_ = 1, greatest_albedo_ = 0;
-    mutable std::once_flag field_is_made_;
-    mutable LampField field_;
+    mutable std::mutex field_mutex_;
+    mutable std::optional<LampField> field_;  // made where it is first asked for
 };
 
 }  // namespace uw
