@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit slow
 //
 // The advice on files of other programs; proposed_scenes.cpp renders it. The environment
 // variable UWVDB_SAMPLES names their folder; where it is set, a file that is missing is a failure.

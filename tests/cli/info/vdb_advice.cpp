@@ -1,4 +1,4 @@
-// ctest labels: unit
+// ctest labels: unit slow
 #include "cli/info/vdb_advice.h"
 
 #include <gtest/gtest.h>
