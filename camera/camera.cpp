@@ -182,11 +182,11 @@ std::optional<Camera::Projection> Camera::project_at_its_time(const Point3& worl
                                          : camera_from_world_ * world);
     // The row depends on the time, and the time on the row: by iteration, since a point crosses far
     // fewer rows in the time between two than one.
-    constexpr int k_most_steps = 50;
+    constexpr int k_max_steps = 50;
     constexpr double k_close = 1e-9;  // [pixels]
     double row = 0.5 * height_;
     std::optional<Projection> seen;
-    for (int step = 0; step < k_most_steps; ++step) {
+    for (int step = 0; step < k_max_steps; ++step) {
         seen = project_in_camera(world_from_camera_at(row).inverse() * world);
         if (!seen || std::abs(seen->image.y - row) < k_close) break;
         row = seen->image.y;

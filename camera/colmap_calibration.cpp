@@ -194,7 +194,7 @@ ColmapParameters port_model_of(const PortDesc& port) {
 
 namespace {
 
-constexpr std::size_t k_most_tokens = 64;
+constexpr std::size_t k_max_tokens = 64;
 
 /// The tokens of one line as values with their positions in the file.
 struct Line {
@@ -224,7 +224,7 @@ Line split(std::string_view text, int number, const std::shared_ptr<const std::s
         node.scalar = text.substr(begin, i - begin);
         node.position = {origin, number, static_cast<int>(begin) + 1};
         line.tokens.push_back(std::move(node));
-        if (line.tokens.size() > k_most_tokens) break;  // no camera has this many
+        if (line.tokens.size() > k_max_tokens) break;  // no camera has this many
     }
     return line;
 }
@@ -255,7 +255,7 @@ bool is_model(std::string_view text) {
 
 Calibration read_line(const Line& line) {
     constexpr auto k_mend = "write ID MODEL WIDTH HEIGHT PARAMS...";
-    if (line.tokens.size() < 5 || line.tokens.size() > k_most_tokens)
+    if (line.tokens.size() < 5 || line.tokens.size() > k_max_tokens)
         line.value(0, "").fail(fmt::format("is not a COLMAP camera; {}", k_mend));
     Calibration result;
     result.format = CalibrationFormat::colmap;

@@ -59,7 +59,7 @@ std::optional<double> first_positive_root(std::span<const double> coefficients, 
 namespace {
 
 /// Beyond tan(89.999 deg) no ray reaches a flat image.
-constexpr double k_largest_r2 = 1e10;
+constexpr double k_max_r2 = 1e10;
 constexpr int k_brown_conrady_max_iterations = 100;
 constexpr int k_max_halvings = 60;
 /// Newton's last step bounds the remaining error; ten times smaller than promised.
@@ -81,7 +81,7 @@ double radial_fold(const DistortionDesc& desc) {
     }
     double r2 = std::numeric_limits<double>::infinity();
     for (const std::span<const double> c : {std::span<const double>(growth), {d}}) {
-        if (const auto root = first_positive_root(c, k_largest_r2)) r2 = std::min(r2, *root);
+        if (const auto root = first_positive_root(c, k_max_r2)) r2 = std::min(r2, *root);
     }
     return std::sqrt(r2);
 }
@@ -201,12 +201,12 @@ constexpr double k_fisheye_tolerance = 1e-14;
 }  // namespace
 
 Fisheye::Fisheye(const DistortionDesc& desc)
-    : k_{desc.k[0], desc.k[1], desc.k[2], desc.k[3]}, largest_angle_(std::numbers::pi) {
+    : k_{desc.k[0], desc.k[1], desc.k[2], desc.k[3]}, max_angle_(std::numbers::pi) {
     // dr/d theta as a polynomial in theta^2.
     const std::array<double, 5> growth{1, 3 * k_[0], 5 * k_[1], 7 * k_[2], 9 * k_[3]};
     constexpr double k_limit = std::numbers::pi * std::numbers::pi;
-    if (const auto fold = first_positive_root(growth, k_limit)) largest_angle_ = std::sqrt(*fold);
-    largest_radius_ = radius(largest_angle_);
+    if (const auto fold = first_positive_root(growth, k_limit)) max_angle_ = std::sqrt(*fold);
+    max_radius_ = radius(max_angle_);
 }
 
 double Fisheye::radius(double theta) const {
@@ -221,7 +221,7 @@ double Fisheye::slope(double theta) const {
 
 double Fisheye::angle(double r) const {
     // Newton's method, kept between angles that are imaged below and above r.
-    double low = 0, high = largest_angle_;
+    double low = 0, high = max_angle_;
     double theta = std::min(r, high);
     for (int iteration = 0; iteration < k_fisheye_max_iterations; ++iteration) {
         const double excess = radius(theta) - r;
@@ -236,7 +236,7 @@ double Fisheye::angle(double r) const {
 
 std::optional<Vector3> Fisheye::direction(const NormalizedPoint& image) const {
     const double r = std::hypot(image.x, image.y);
-    if (!(r <= largest_radius_)) return std::nullopt;
+    if (!(r <= max_radius_)) return std::nullopt;
     if (r == 0) return Vector3(0, 0, 1);
     const double theta = angle(r);
     const double across = std::sin(theta) / r;
@@ -247,7 +247,7 @@ std::optional<NormalizedPoint> Fisheye::image(const Vector3& direction) const {
     const double across = std::hypot(direction.x, direction.y);
     const double theta = std::atan2(across, direction.z);
     // The backward direction is imaged all around the circle: at no particular point.
-    if (theta > largest_angle_ || (across == 0 && direction.z < 0)) return std::nullopt;
+    if (theta > max_angle_ || (across == 0 && direction.z < 0)) return std::nullopt;
     if (across == 0) return NormalizedPoint{};
     const double scale = radius(theta) / across;
     return NormalizedPoint{scale * direction.x, scale * direction.y};

@@ -92,16 +92,16 @@ class Fisheye {
     double falloff(const Vector3& direction) const;
 
     /// Angle to the axis up to which there are rays [rad], at most pi.
-    double largest_angle() const { return largest_angle_; }
+    double max_angle() const { return max_angle_; }
 
   private:
     double radius(double theta) const;
     double slope(double theta) const;  // dr/d theta
-    double angle(double r) const;      // the inverse of radius; precondition: r <= largest_radius_
+    double angle(double r) const;      // the inverse of radius; precondition: r <= max_radius_
 
     std::array<double, 4> k_;
-    double largest_angle_ = 0;
-    double largest_radius_ = 0;
+    double max_angle_ = 0;
+    double max_radius_ = 0;
 };
 
 /// How a lens maps directions to the image. All have `direction`, `image` and `falloff`.

@@ -180,7 +180,7 @@ void read_coefficients(const ConfigValue& value, Model model, Calibration& resul
 /// does.
 void read_window(const ConfigValue& root, Calibration& result) {
     constexpr auto k_mend = "give whole pixels, or 0 for none";
-    constexpr int k_most_binned = 1000;
+    constexpr int k_max_binned = 1000;
     CameraDesc& camera = result.desc;
     const auto pixels = [&](const ConfigValue& map, std::string_view key, int most) {
         const ConfigNode* const node = map.node().find(key);
@@ -208,8 +208,8 @@ void read_window(const ConfigValue& root, Calibration& result) {
             camera.intrinsics.cy -= y;
         }
     }
-    const int across = std::max(1, pixels(root, "binning_x", k_most_binned));
-    const int down = std::max(1, pixels(root, "binning_y", k_most_binned));
+    const int across = std::max(1, pixels(root, "binning_x", k_max_binned));
+    const int down = std::max(1, pixels(root, "binning_y", k_max_binned));
     if (across > 1 || down > 1) {
         result.model += fmt::format(", binning {} x {}", across, down);
         IntrinsicsDesc& i = camera.intrinsics;

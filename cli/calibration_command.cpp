@@ -116,7 +116,7 @@ FieldOfView field_of_view(const CameraDesc& camera, const Direction& direction) 
 void find_fold(const CameraDesc& camera, CalibrationSurvey& survey) {
     if (camera.distortion.model == DistortionDesc::Model::fisheye) {
         const Fisheye lens(camera.distortion);
-        survey.fold_angle = lens.largest_angle();
+        survey.fold_angle = lens.max_angle();
         const auto edge = lens.image(
             {std::sin(0.999999 * *survey.fold_angle), 0, std::cos(0.999999 * *survey.fold_angle)});
         if (edge) survey.fold_radius = camera.intrinsics.fx * edge->x;

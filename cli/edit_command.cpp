@@ -65,9 +65,9 @@ void open_browser(const std::string& address) {
 // memory for each of them once it has been freed: the process would grow for as long as lamps are
 // dragged.
 void return_large_memory() {
-    constexpr int k_large_bytes = 1 << 20, k_most_arenas = 4;
+    constexpr int k_large_bytes = 1 << 20, k_max_arenas = 4;
     mallopt(M_MMAP_THRESHOLD, k_large_bytes);
-    mallopt(M_ARENA_MAX, k_most_arenas);
+    mallopt(M_ARENA_MAX, k_max_arenas);
 }
 
 ExitCode run_edit(const EditArguments& a) {

@@ -44,7 +44,7 @@ std::size_t chosen_camera(const std::string& name, const std::vector<RigCameraDe
 namespace {
 
 constexpr int k_last_frame = 999'999'999;
-constexpr std::size_t k_most_frames = 1'000'000;
+constexpr std::size_t k_max_frames = 1'000'000;
 
 // The option being read, for messages.
 struct ListOption {
@@ -112,7 +112,7 @@ std::vector<int> parse_frame_list(const std::string& text, const char* name, con
         for (long frame = range.first; frame <= range.last; frame += range.step) {
             const int number = static_cast<int>(frame);
             if (known.insert(number).second) frames.push_back(number);
-            if (frames.size() > k_most_frames)
+            if (frames.size() > k_max_frames)
                 option.refuse(text,
                               fmt::format("more than a million {}; render them in parts", what));
         }

@@ -164,9 +164,9 @@ namespace {
 /// Reads a file of at most 1 GiB. Throws as CoordinateTable, and IoError.
 CoordinateTable read_coordinates(const std::filesystem::path& file,
                                  CoordinateTable::NameSets names) {
-    constexpr std::size_t k_largest_file = std::size_t{1} << 30;
+    constexpr std::size_t k_max_file = std::size_t{1} << 30;
     const std::string subject = printable(file.string(), 300);
-    return {read_text_file(file, subject, k_largest_file, "table", Pipes::read), subject, names};
+    return {read_text_file(file, subject, k_max_file, "table", Pipes::read), subject, names};
 }
 
 /// `uwvdb project` and `uwvdb rays` as typed.

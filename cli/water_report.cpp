@@ -216,9 +216,9 @@ Report report_on_depths(const WaterTable& water) {
     report.set({{"depths_m", list_json(water.depths)},
                 {"a", water.absorption_at},
                 {"b", water.scattering_at}});
-    constexpr std::size_t k_most_printed = 4;
+    constexpr std::size_t k_max_printed = 4;
     if (water.depths.empty()) return report;
-    if (water.wavelengths_nm.size() > k_most_printed) return report;
+    if (water.wavelengths_nm.size() > k_max_printed) return report;
     Columns columns{{"", "depth", "[m]", "", water.depths}};
     for (std::size_t band = 0; band < water.wavelengths_nm.size(); ++band) {
         const std::string nm = fmt::format(" {:g}", water.wavelengths_nm[band]);
@@ -374,7 +374,7 @@ std::string water_vsf_csv(const WaterSurvey& survey) {
 namespace {
 
 /// More bands than this are so close that their dots would hide the curve.
-constexpr std::size_t k_most_dots = 40;
+constexpr std::size_t k_max_dots = 40;
 
 struct LineStyle {
     const char* colour;
@@ -462,7 +462,7 @@ void add_spectrum(PlotPanel& panel, const std::string& label, LineStyle style,
         PlotCurve line{label, fine.wavelengths_nm, {}, style.colour, style.dashes};
         for (std::size_t i = 0; i < line.x.size(); ++i) line.y.push_back(value(*at_fine, i));
         panel.curves.push_back(std::move(line));
-        if (dots.x.size() > k_most_dots) return;
+        if (dots.x.size() > k_max_dots) return;
         dots.label.clear();
     }
     panel.curves.push_back(std::move(dots));

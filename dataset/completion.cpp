@@ -155,8 +155,8 @@ std::string dataset_page(const DatasetDefinition& definition, const std::vector<
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t k_most_on_sheet = 60;
-constexpr std::size_t k_most_on_page = 240;
+constexpr std::size_t k_max_on_sheet = 60;
+constexpr std::size_t k_max_on_page = 240;
 
 class Completion {
   public:
@@ -318,9 +318,9 @@ class Completion {
         }
         files_.add("record", record_file(definition_, record.view), [](const fs::path&) {});
         const std::size_t index = definition_.index(record.view);
-        if (is_chosen(index, k_most_on_page)) show(record);
+        if (is_chosen(index, k_max_on_page)) show(record);
         const SetFile* const image = picture_of(record);
-        if (image != nullptr && is_chosen(index, k_most_on_sheet))
+        if (image != nullptr && is_chosen(index, k_max_on_sheet))
             sheet_.push_back(folder_ / image->path);
     }
 

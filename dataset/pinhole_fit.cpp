@@ -141,9 +141,9 @@ class PinholeSquares {
                     for (std::size_t j = 0; j <= i; ++j) normal[i * size_ + j] += row[i] * row[j];
                 }
             }
-        constexpr double k_least_pivot = 1e-12;
+        constexpr double k_min_pivot = 1e-12;
         CholeskyFactor factor;
-        if (!factor.factor(normal, size_, k_least_pivot)) return {};
+        if (!factor.factor(normal, size_, k_min_pivot)) return {};
         factor.solve(right);
         return right;
     }
@@ -181,10 +181,10 @@ CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen
     std::vector<double> here{air.fx, air.fy, air.cx, air.cy};
     here.resize(4 + lens.count());
     double least = squares.sum(here);
-    constexpr int k_most_steps = 100;
-    constexpr double k_smallest_share = 1e-3;  // of a step
+    constexpr int k_max_steps = 100;
+    constexpr double k_min_share = 1e-3;  // of a step
     constexpr double k_gain = 1e-12;           // relative, of the sum: less is rounding
-    for (int i = 0; i < k_most_steps; ++i) {
+    for (int i = 0; i < k_max_steps; ++i) {
         const std::vector<double> step = squares.step(here);
         if (step.empty())
             throw InputError(fmt::format(
@@ -198,7 +198,7 @@ CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen
             for (std::size_t k = 0; k < there.size(); ++k) there[k] += share * step[k];
             sum = squares.sum(there);
             share *= 0.5;
-        } while (!(sum < least) && share > k_smallest_share);
+        } while (!(sum < least) && share > k_min_share);
         if (!(sum < least)) break;
         const bool is_last = least - sum <= k_gain * least;
         here = std::move(there);
@@ -229,10 +229,10 @@ struct SeenByCamera {
 
 SeenByCamera seen_by_camera(const DatasetDefinition& definition, std::size_t draw,
                             std::size_t camera, const SceneDesc& scene, const Surfaces& surfaces) {
-    constexpr std::size_t k_most_views_of_camera = 16;
+    constexpr std::size_t k_max_views_of_camera = 16;
     constexpr int k_side = 32;
     const std::size_t frames = definition.frames.size();
-    const std::size_t views = std::min(frames, k_most_views_of_camera);
+    const std::size_t views = std::min(frames, k_max_views_of_camera);
     SeenByCamera seen;
     std::vector<ImageSight> open;
     std::vector<Affine> camera_from_world;  // of those
@@ -370,7 +370,7 @@ std::string error_text(const ModelError& error) {
 namespace {
 
 /// The camera of a rig that is off the most in air; null where that does not matter.
-const PinholeFit* most_off(const PinholeFits& fits) {
+const PinholeFit* max_off(const PinholeFits& fits) {
     const PinholeFit* most = nullptr;
     for (const auto& fit : fits)
         if (fit && (most == nullptr || fit->in_air.rms > most->in_air.rms)) most = &*fit;
@@ -381,7 +381,7 @@ const PinholeFit* most_off(const PinholeFits& fits) {
 }  // namespace
 
 std::string fitted_message(const std::string& formats, const PinholeFits& fits) {
-    const PinholeFit* most = most_off(fits);
+    const PinholeFit* most = max_off(fits);
     if (formats.empty() || most == nullptr) return {};
     return fmt::format(
         "--format {} has no words for a port: the cameras there are pinholes, fitted to surfaces "
@@ -391,7 +391,7 @@ std::string fitted_message(const std::string& formats, const PinholeFits& fits) 
 
 std::string in_air_message(const std::string& formats, const std::string& fittable,
                            const PinholeFits& fits) {
-    const PinholeFit* most = most_off(fits);
+    const PinholeFit* most = max_off(fits);
     if (formats.empty() || most == nullptr) return {};
     const std::string whose = fittable.empty()      ? "those of colmap, nerfstudio and euroc"
                               : fittable == formats ? "them"

@@ -78,11 +78,11 @@ namespace {
 // Readers cut the names of images into seconds and nine digits of nanoseconds, and sort them as
 // text. So all have 19 digits, as the benchmark's, whose clock began in 1970, have; those of other
 // clocks are counted from May 2014 [ns].
-constexpr std::int64_t k_least_of_19_digits = 1'000'000'000'000'000'000;
+constexpr std::int64_t k_min_of_19_digits = 1'000'000'000'000'000'000;
 constexpr std::int64_t k_start_of_others = 1'400'000'000'000'000'000;
 
 bool has_19_digits(std::int64_t stamp) {
-    return stamp >= k_least_of_19_digits;
+    return stamp >= k_min_of_19_digits;
 }
 
 std::int64_t euroc_stamp(std::int64_t stamp) {

@@ -88,11 +88,11 @@ std::vector<ImageSight> sights_of(const Camera& camera, int side, const Surfaces
 
 std::vector<Landmark> point_seeds(const DatasetDefinition& definition, std::size_t draw,
                                   const SceneDesc& scene, const Surfaces& surfaces) {
-    constexpr std::size_t k_most_views = 64;
+    constexpr std::size_t k_max_views = 64;
     const std::size_t all = definition.frames.size() * definition.cameras.size();
-    const std::size_t views = std::min(all, k_most_views);
+    const std::size_t views = std::min(all, k_max_views);
     const auto side = static_cast<int>(
-        std::sqrt(static_cast<double>(k_most_points) / static_cast<double>(views)));
+        std::sqrt(static_cast<double>(k_max_points) / static_cast<double>(views)));
     std::vector<Landmark> points;
     for (std::size_t i = 0; i < views; ++i) {
         const View view = definition.view(draw * all + i * all / views);

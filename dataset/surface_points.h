@@ -24,7 +24,7 @@ std::string points_csv(const std::vector<Landmark>& points);
 std::vector<Landmark> read_points(const std::filesystem::path& file);
 
 /// How many surface points a draw has at most.
-inline constexpr std::size_t k_most_points = 4096;
+inline constexpr std::size_t k_max_points = 4096;
 
 /// What a camera sees at a place of its image.
 struct ImageSight {

@@ -19,7 +19,7 @@ struct BoardDesc {
 BoardDesc read_board(const std::string& text);
 
 /// The corners of the board in photographs, to a fraction of a pixel, found by OpenCV in the module
-/// of fit/least_squares.h: row by row, x to the right and y down the board [m] from the first one,
+/// of fit/min_squares.h: row by row, x to the right and y down the board [m] from the first one,
 /// beyond which the square at the board's corner is black, as on uwvdb's sheet. Pictures that do
 /// not show all of the board are passed over, and named to `say` in one line each. Throws as
 /// read_image, and InputError if none shows it.

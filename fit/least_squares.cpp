@@ -9,7 +9,7 @@
 namespace uw {
 
 void* address_in_fitting(const char* symbol) {
-    const ModuleFunction found = load_function(least_squares_module::k_name, symbol);
+    const ModuleFunction found = load_function(min_squares_module::k_name, symbol);
     if (found.address == nullptr)
         throw UsageError(
             fmt::format("fitting needs Ceres and OpenCV ({}); {}{}", found.fault,
@@ -19,7 +19,7 @@ void* address_in_fitting(const char* symbol) {
 }
 
 LeastSquaresOutcome solve_least_squares(ResidualFunction& function, LeastSquaresProblem& problem) {
-    auto& solve = function_of_fitting<least_squares_module::Solve>(least_squares_module::k_solve);
+    auto& solve = function_of_fitting<min_squares_module::Solve>(min_squares_module::k_solve);
     LeastSquaresOutcome outcome;
     std::exception_ptr fault;
     solve(function, problem, outcome, fault);
@@ -28,14 +28,14 @@ LeastSquaresOutcome solve_least_squares(ResidualFunction& function, LeastSquares
 }
 
 EigenSystem symmetric_eigen_system(std::span<const double> matrix) {
-    auto& solve = function_of_fitting<least_squares_module::Eigen>(least_squares_module::k_eigen);
+    auto& solve = function_of_fitting<min_squares_module::Eigen>(min_squares_module::k_eigen);
     EigenSystem system;
     solve(matrix, system);
     return system;
 }
 
 std::vector<RigidMatrix> poses_from_points(const SeenPoints& seen) {
-    auto& find = function_of_fitting<least_squares_module::Poses>(least_squares_module::k_poses);
+    auto& find = function_of_fitting<min_squares_module::Poses>(min_squares_module::k_poses);
     std::vector<RigidMatrix> poses;
     find(seen, poses);
     return poses;

@@ -59,7 +59,7 @@ struct LeastSquaresProblem {
     /// Where Cauchy's loss begins to count a group for less, in standard deviations; infinite: the
     /// squares are summed as they are.
     double loss_scale = std::numeric_limits<double>::infinity();
-    int most_iterations = 100;
+    int max_iterations = 100;
     double tolerance = 1e-10;  // of the sum's relative change: then it has converged
     bool is_rough = false;     // the sum may rise for a few steps: it has noise
     int threads = 1;
@@ -106,7 +106,7 @@ Function& function_of_fitting(const char* symbol) {
 }
 
 /// What the module exports: each puts what it is left with into `fault`.
-namespace least_squares_module {
+namespace min_squares_module {
 inline constexpr const char* k_name = "uwvdb_fitting";
 inline constexpr const char* k_solve = "uwvdb_solve_least_squares";
 using Solve = void(ResidualFunction& function, LeastSquaresProblem& problem,
@@ -115,6 +115,6 @@ inline constexpr const char* k_eigen = "uwvdb_symmetric_eigen_system";
 using Eigen = void(std::span<const double> matrix, EigenSystem& system);
 inline constexpr const char* k_poses = "uwvdb_poses_from_points";
 using Poses = void(const SeenPoints& seen, std::vector<RigidMatrix>& poses);
-}  // namespace least_squares_module
+}  // namespace min_squares_module
 
 }  // namespace uw

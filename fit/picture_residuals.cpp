@@ -49,7 +49,7 @@ double step_of(const SceneUnknown& unknown, bool has_all_light) {
 /// The least pixels that are rendered of a picture. Water's light is that at a pixel's middle; with
 /// fewer, how it bends within a pixel is more than 1e-3 of it. Of all light each pixel has a node,
 /// and what lies between nodes is smoothed away (docs/multiple.md).
-constexpr double k_least_pixels = 2300;
+constexpr double k_min_pixels = 2300;
 
 /// The side of cells, of which about so many lie across a picture [pixels]. It is whole, so that a
 /// cell is what the pixels of a coarser image cover. Of a mosaic it is odd: then the pixels of each
@@ -63,7 +63,7 @@ int side_of_cells(const CameraDesc& camera, int cells) {
 }
 
 /// The fewest pixels across which scatter is measured: that of fewer is known too badly.
-constexpr int k_least_scatter_side = 5;
+constexpr int k_min_scatter_side = 5;
 
 void refuse_developed(const SensorDesc& sensor) {
     if (sensor.image.is_raw) return;
@@ -247,7 +247,7 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     left_ = (scene.camera.width - cell_side_ * width_) / 2;
     top_ = (scene.camera.height - cell_side_ * height_) / 2;
     pixels_per_side_ = std::clamp(
-        static_cast<int>(std::ceil(std::sqrt(k_least_pixels / (width_ * height_)))), 1, cell_side_);
+        static_cast<int>(std::ceil(std::sqrt(k_min_pixels / (width_ * height_)))), 1, cell_side_);
     for (std::size_t i = 0; i < files_.size(); ++i) {
         names_.push_back(files_[i].file.filename().string());
         renderers_.emplace_back();
@@ -256,8 +256,8 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     weigh(Weights::by_observation);
     const std::size_t all =
         files_.size() * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    constexpr double k_least_share = 0.01;
-    if (static_cast<double>(cells_.size()) < k_least_share * static_cast<double>(all))
+    constexpr double k_min_share = 0.01;
+    if (static_cast<double>(cells_.size()) < k_min_share * static_cast<double>(all))
         throw InputError(fmt::format(
             "the pictures have next to nothing to compare: {} of {} cells are neither black nor "
             "white; expose them so that what matters is grey",
@@ -289,7 +289,7 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
         const int x0 = left_ + cell.x * cell_side_, y0 = top_ + cell.y * cell_side_;
         const PixelWindow window{x0, y0, x0 + cell_side_, y0 + cell_side_};
         if (!is_comparable(camera, values, window, colours_)) return;
-        const int more = std::max(0, (k_least_scatter_side - cell_side_ + 1) / 2);
+        const int more = std::max(0, (k_min_scatter_side - cell_side_ + 1) / 2);
         const PixelWindow around =
             intersection({window.x0 - more, window.y0 - more, window.x1 + more, window.y1 + more},
                          {0, 0, values.width(), values.height()});

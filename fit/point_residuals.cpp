@@ -129,8 +129,8 @@ Pose PointResiduals::start_pose(std::size_t image) const {
         if (point.image != image) continue;
         const Camera& camera = *cameras_[index_of(point.through)];
         const std::optional<Ray> ray = camera.refracted_ray(point.seen.x, point.seen.y);
-        constexpr double k_least_forward = 0.05;
-        if (!ray || ray->direction.z < k_least_forward) continue;
+        constexpr double k_min_forward = 0.05;
+        if (!ray || ray->direction.z < k_min_forward) continue;
         const Vector3 from_centre = point.point - centres_[image];
         pinhole.points.push_back({from_centre.x, from_centre.y, from_centre.z});
         pinhole.images.push_back(

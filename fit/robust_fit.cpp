@@ -111,8 +111,8 @@ class Rounds {
             observations_.set_deviation(deviation > 0 ? deviation : 1);
             return round("standard errors", k_infinity, k_in_the_end);
         }
-        constexpr int k_most_rounds = 8;
-        for (int i = 0; i < k_most_rounds && deviation > 0; ++i) {
+        constexpr int k_max_rounds = 8;
+        for (int i = 0; i < k_max_rounds && deviation > 0; ++i) {
             observations_.set_deviation(deviation);
             outcome = round("without outliers", k_cauchy, k_on_the_way);
             const double before = std::exchange(deviation, deviation_now());
@@ -131,7 +131,7 @@ class Rounds {
         problem_.loss_scale = loss_scale;
         problem_.is_rough = observations_.is_rough();
         problem_.tolerance = problem_.is_rough ? k_on_the_way : tolerance;
-        problem_.most_iterations = tolerance < k_on_the_way ? 100 : 25;
+        problem_.max_iterations = tolerance < k_on_the_way ? 100 : 25;
         if (options_.progress)
             problem_.progress = [&, stage](int, double cost) { options_.progress(stage, cost); };
         LeastSquaresOutcome outcome = solve_least_squares(observations_, problem_);

@@ -26,7 +26,7 @@ std::optional<double> number_in(const ConfigNode& node) {
 }
 
 /// What is unknown of pictures, beside what is of scenes.
-constexpr double k_least_exposure = 1e-3;  // of where it begins
+constexpr double k_min_exposure = 1e-3;  // of where it begins
 constexpr std::string_view k_exposure = "exposure", k_response = "response";
 
 /// The segments of a path: "lamps.*.position[0]" are lamps, *, position, [0].
@@ -107,7 +107,7 @@ void SceneUnknowns::add_of_pictures(const std::string& key, std::span<const std:
     const auto add_one = [&](const std::string& path, const std::string& name, SceneUnknown::Of of,
                              std::size_t picture) {
         places_.push_back({path, unknowns_.size()});
-        SceneUnknown unknown{name, "", 1, 1, k_least_exposure};
+        SceneUnknown unknown{name, "", 1, 1, k_min_exposure};
         unknown.of = of;
         unknown.picture = picture;
         unknowns_.push_back(std::move(unknown));
@@ -124,7 +124,7 @@ void SceneUnknowns::add_of_pictures(const std::string& key, std::span<const std:
 
 void SceneUnknowns::begin_at(std::size_t unknown, double exposure) {
     unknowns_[unknown].start = unknowns_[unknown].scale = exposure;
-    unknowns_[unknown].lower = k_least_exposure * exposure;
+    unknowns_[unknown].lower = k_min_exposure * exposure;
 }
 
 void SceneUnknowns::add(const ConfigNode& node, const std::string& path) {

@@ -116,12 +116,12 @@ class ConfigWalk {
         Extent extent = take_parts();
         ++extent.height;
         // Real configs have a tenth of either.
-        constexpr std::size_t k_most_steps = 1000;
+        constexpr std::size_t k_max_steps = 1000;
         constexpr int k_highest = 100;
         if (extent.height > k_highest || open_.size() > k_highest)
             throw Fault{"its " + part +
                         " is at the end of a chain of more than 100 references; shorten it"};
-        if (extent.steps > k_most_steps)
+        if (extent.steps > k_max_steps)
             throw Fault{"its " + part + " takes more than 1000 steps; divide it"};
         open_.pop_back();
         return known_[part] = extent;

@@ -282,7 +282,7 @@ namespace {
 
 // Copies of the gradient for the parts of an image may take this much memory, or two.
 constexpr double k_gradient_bytes = 256e6;
-constexpr std::size_t k_most_gradient_parts = 16;
+constexpr std::size_t k_max_gradient_parts = 16;
 
 const LoadedGrid& array_of(const SceneDesc& desc, std::size_t volume) {
     if (volume >= desc.volumes.size() || desc.volumes[volume].array == nullptr)
@@ -326,7 +326,7 @@ class GradientParts {
             bytes += 8.0 * 3 * k_with_halves * texture.width() * texture.height();
         }
         const auto parts = static_cast<std::size_t>(std::clamp(
-            k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_most_gradient_parts}));
+            k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_max_gradient_parts}));
         require_memory(bytes * static_cast<double>(parts),
                        "the derivatives by voxel and texel need", "use fewer of them");
         for (std::size_t part = 0; part < parts; ++part) {

@@ -25,7 +25,7 @@ constexpr int k_moments = 9;
 constexpr int k_positions = 32;
 // How far things may move in a part of the exposure [pixels], and the most parts.
 constexpr double k_surface_step = 0.5, k_light_step = 2, k_view_step = 4;
-constexpr int k_most_parts = 64;
+constexpr int k_max_parts = 64;
 // Samples for a blur that is the mean over them, as for an aperture's.
 constexpr int k_samples = 64;
 
@@ -208,9 +208,9 @@ void Exposure::divide(int samples) {
     if (view_pixels_ * share > k_view_step) parts = std::max(parts, view_pixels_ / k_view_step);
     const bool is_path = integrator_kind(scene_.desc().render.integrator).traces_paths;
     // Light paths tell their error by two of them.
-    const double most_in_a_row = is_path ? samples / 2 : samples;
-    parts = std::min(parts, static_cast<double>(k_most_parts));
-    if (share > 0) parts = std::min(parts, most_in_a_row / share);
+    const double max_in_a_row = is_path ? samples / 2 : samples;
+    parts = std::min(parts, static_cast<double>(k_max_parts));
+    if (share > 0) parts = std::min(parts, max_in_a_row / share);
     parts_ = std::max(1, static_cast<int>(std::ceil(parts)));
     samples_of_part_ = samples;
     if (rows_.shutter > 0)

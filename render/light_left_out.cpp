@@ -26,8 +26,8 @@ constexpr LampField::Fineness k_guides{.orders = 8, .is_coarse = true};
 // The work of a vertex of a path is about that of six camera rays that single scattering is
 // rendered from: this is a tenth of the image's.
 constexpr double k_vertices_per_ray = 1.0 / 64;
-constexpr double k_fewest_vertices = 2000, k_most_vertices = 20'000;
-constexpr std::size_t k_most_places = 1152;
+constexpr double k_fewest_vertices = 2000, k_max_vertices = 20'000;
+constexpr std::size_t k_max_places = 1152;
 constexpr std::size_t k_places_at_once = 4;  // between two looks at the work done
 constexpr double k_vertices_of_place = 2;    // the work there besides that of its paths
 
@@ -40,10 +40,10 @@ std::pair<double, double> even_place(std::size_t number) {
             std::modf(0.5 + 0.5698402909980532 * n, &whole)};
 }
 
-double most_work(const PixelRenderer& pixels) {
+double max_work(const PixelRenderer& pixels) {
     const RaySource& rays = pixels.rays();
     return std::clamp(k_vertices_per_ray * rays.width() * rays.height() * pixels.samples(),
-                      k_fewest_vertices, k_most_vertices);
+                      k_fewest_vertices, k_max_vertices);
 }
 
 /// Light per place of the image: emitted, scattered or reflected no more than once, and all other.
@@ -83,11 +83,11 @@ std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene)
     const PixelRenderer pixels = pixel_renderer(scene, transport);
     const PathPixels paths(pixels, 0);
     const RaySource& rays = pixels.rays();
-    const double enough = most_work(pixels);
+    const double enough = max_work(pixels);
     Sums sums;
     double work = 0;
     // As the work of a path is the same in every run, so is the number of places.
-    for (std::size_t first = 0; first < k_most_places && work < enough; first += k_places_at_once) {
+    for (std::size_t first = 0; first < k_max_places && work < enough; first += k_places_at_once) {
         std::array<PathTrial, k_places_at_once> trials;
         parallel_for(trials.size(), [&](std::size_t i) {
             const auto [x, y] = even_place(first + i);

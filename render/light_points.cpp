@@ -20,7 +20,7 @@ namespace uw {
 namespace {
 
 constexpr std::size_t k_times_as_many = 4;          // as many points for comparison
-constexpr std::size_t k_most_points = 1024;         // as `samples` may be
+constexpr std::size_t k_max_points = 1024;         // as `samples` may be
 constexpr int k_rays_across = 12, k_rays_down = 9;  // rays over the image
 constexpr int k_places = 6;  // on each, at equal steps of what the water takes away
 
@@ -41,7 +41,7 @@ std::vector<Lamp> pointed_emitters(const AssembledScene& scene, std::size_t time
     for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
         const LampDesc& desc = scene.desc().lamps[i];
         if (!is_pointed(desc)) continue;
-        const auto count = static_cast<int>(std::min(times * count_of(scene, i), k_most_points));
+        const auto count = static_cast<int>(std::min(times * count_of(scene, i), k_max_points));
         const std::size_t first = emitters.size();
         if (desc.sky) {
             SkyDesc sky = *desc.sky;
@@ -159,7 +159,7 @@ class PointLight {
 std::vector<PointedLamp> find_pointed_lamps(const AssembledScene& scene) {
     std::vector<PointedLamp> lamps;
     for (std::size_t i = 0; i < scene.lamps.size(); ++i)
-        if (is_pointed(scene.desc().lamps[i]) && count_of(scene, i) < k_most_points)
+        if (is_pointed(scene.desc().lamps[i]) && count_of(scene, i) < k_max_points)
             lamps.push_back({i, count_of(scene, i), 0});
     if (lamps.empty()) return lamps;
     const PointLight all(scene, scene.emitters), few(scene, pointed_emitters(scene, 1)),
@@ -221,7 +221,7 @@ std::vector<std::string> pointed_lamp_notes(const AssembledScene& scene,
         if (!lamp.matters()) continue;
         const LampDesc& desc = scene.desc().lamps[lamp.lamp];
         const bool is_sky = desc.sky != nullptr;
-        const std::size_t more = std::min(k_times_as_many * lamp.count, k_most_points);
+        const std::size_t more = std::min(k_times_as_many * lamp.count, k_max_points);
         // Of which drafts have a part.
         const auto samples =
             static_cast<std::size_t>(is_sky ? desc.sky->samples : desc.glow->emission.samples);
@@ -231,7 +231,7 @@ std::vector<std::string> pointed_lamp_notes(const AssembledScene& scene,
             is_sky ? "sky" : "volume '" + desc.name + "'", lamp.count,
             is_sky ? "directions" : "points", more, 100 * lamp.change,
             is_sky ? "sky.samples" : "its emission's samples",
-            std::min(k_times_as_many * samples, k_most_points)));
+            std::min(k_times_as_many * samples, k_max_points)));
     }
     return notes;
 }

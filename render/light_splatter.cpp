@@ -17,7 +17,7 @@ namespace {
 
 // Shadow maps of a lamp's emitters share the texels of a point lamp's, but have no fewer than this
 // along an edge: a shadow narrower than a texel may be missed.
-constexpr int k_least_shadow_resolution = 128;
+constexpr int k_min_shadow_resolution = 128;
 // How far from the camera a sun's shadows in the water matter: the optical depth.
 constexpr double k_reach_depth = 15;
 
@@ -43,7 +43,7 @@ void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowO
 
 int LightSplatter::shadow_resolution(const Lamp& emitter) const {
     const auto shared = static_cast<int>(options_.shadow_resolution * std::sqrt(emitter.share()));
-    return std::max(shared, std::min(options_.shadow_resolution, k_least_shadow_resolution));
+    return std::max(shared, std::min(options_.shadow_resolution, k_min_shadow_resolution));
 }
 
 void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Lamp& emitter) {

@@ -16,7 +16,7 @@ namespace uw {
 namespace {
 
 // Particles are drawn where they cover so much of a pixel, as long as they are not too many.
-constexpr double k_least_cover = 1e-3;
+constexpr double k_min_cover = 1e-3;
 // Above this, single particles are missed by the eye.
 constexpr double k_visible_cover = 0.02;
 // Light from beyond this optical depth, in the clearest band, is a thousandth of what it was.
@@ -51,13 +51,13 @@ std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Cam
                                                        .water = without_snow(desc, medium),
                                                        .alone = snow_alone(desc, medium)});
     const std::vector<SnowClass>& classes = model->field.classes();
-    const double least_c = medium.uniform.attenuation().least(medium.wavelengths_nm.size());
-    const double reach = std::min(k_farthest, k_seen_depth / std::max(least_c, 1e-6));
+    const double min_c = medium.uniform.attenuation().least(medium.wavelengths_nm.size());
+    const double reach = std::min(k_farthest, k_seen_depth / std::max(min_c, 1e-6));
     const double view = view_angle(camera);
     const double pixel = view / camera.width() / camera.height();
     model->ranges.assign(classes.size(), reach);
     double wanted = 0;  // of particles in view
-    for (double cover = k_least_cover; view > 0; cover *= k_cover_step) {
+    for (double cover = k_min_cover; view > 0; cover *= k_cover_step) {
         double count = 0;
         for (std::size_t k = 0; k < classes.size(); ++k) {
             double& range = model->ranges[k];

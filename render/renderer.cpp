@@ -22,7 +22,7 @@ namespace uw {
 namespace {
 
 // A stated standard error that final images should not exceed, relative to their mean.
-constexpr double k_most_multiple_error = 0.03;
+constexpr double k_max_multiple_error = 0.03;
 
 PixelWindow whole_image(const CameraDesc& camera) {
     return {0, 0, camera.width, camera.height};
@@ -197,7 +197,7 @@ void Renderer::warn_of_error(const PathRequest& request) {
 
 void Renderer::warn_of_multiple_error() {
     const RenderDesc::Quality quality = scene_->desc().render.quality;
-    if (quality == RenderDesc::Quality::draft || !(report_.multiple_error > k_most_multiple_error))
+    if (quality == RenderDesc::Quality::draft || !(report_.multiple_error > k_max_multiple_error))
         return;
     const char* const better = quality == RenderDesc::Quality::exact ? "" : "--quality exact, or ";
     report_.warnings.push_back(fmt::format(

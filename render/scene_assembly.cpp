@@ -151,14 +151,14 @@ void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
 
 // The water that maps of caustics hold: a tile of the sea, else around the camera.
 SunFocus::Extent extent_of_focus(const SceneDesc& desc, const AssembledScene& scene) {
-    constexpr double k_side = 32, k_least_depth = 2, k_margin = 1.2;
+    constexpr double k_side = 32, k_min_depth = 2, k_margin = 1.2;
     const WaterSurface& surface = *scene.water_surface;
     const Vector3 camera =
         surface.coordinates(at_origin_plus(scene.camera->world_from_camera().offset()));
     SunFocus::Extent extent{.side = k_side, .u = camera.x, .v = camera.y};
     if (const auto* sea = std::get_if<WaveSpectrumDesc>(&desc.water.surface->waves->shape))
         extent = {.side = sea->tile, .is_periodic = true};
-    double depth = std::max(k_least_depth, -camera.z);
+    double depth = std::max(k_min_depth, -camera.z);
     const auto include = [&](const Point3& x) { depth = std::max(depth, -surface.height(x)); };
     if (const Bounds bounds = scene.surfaces->bounds(); !bounds.empty())
         for (int corner = 0; corner < 8; ++corner)

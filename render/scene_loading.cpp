@@ -211,7 +211,7 @@ void apply_request(const ImageRequest& request, SceneDesc& scene) {
     if (request.samples && request.error)
         throw UsageError("--samples and --error: each says how long to go on; give one of them");
     if (request.samples) render.samples = *request.samples;
-    const int most = kind.traces_paths ? k_most_paths : k_most_samples;
+    const int most = kind.traces_paths ? k_max_paths : k_max_samples;
     if (samples_of(render) > most)
         throw UsageError(fmt::format(
             "{}: expected 1 to {}, found {}; only integrator path takes more",

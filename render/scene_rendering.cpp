@@ -24,10 +24,10 @@ namespace {
 // along a ray, which add up, are held to less (ColumnFace).
 constexpr double k_column_tolerance = 0.02;
 // Rays per pixel for what is not a mean over light paths, in images that are.
-constexpr int k_most_samples_beside_paths = 16;
+constexpr int k_max_samples_beside_paths = 16;
 // One path's relative deviation is 2 to 3 at this optical depth of the nearest lamp; the table that
 // leads paths there ends at 48.
-constexpr double k_most_depth = 20;
+constexpr double k_max_depth = 20;
 
 // Whether light that is scattered or reflected more than once is rendered by AllLightPass.
 bool paths_at_nodes(const RenderDesc& render) {
@@ -89,7 +89,7 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const RaySource& rays,
                              const PointMatchers& matchers) {
     int samples = samples_of(scene.desc().render);
     if (integrator_kind(scene.desc().render.integrator).traces_paths)
-        samples = std::min(samples, k_most_samples_beside_paths);
+        samples = std::min(samples, k_max_samples_beside_paths);
     return {rays,
             scene.lit(),
             transport,
@@ -108,12 +108,12 @@ std::vector<ColourGroup> colour_groups_of(const SceneDesc& scene) {
 std::optional<std::string> far_lamp_warning(const AssembledScene& scene) {
     if (!paths_at_nodes(scene.desc().render)) return std::nullopt;
     const std::optional<double> depth = depth_of_nearest_lamp(scene);
-    if (!depth || *depth <= k_most_depth) return std::nullopt;
+    if (!depth || *depth <= k_max_depth) return std::nullopt;
     return fmt::format(
         "multiple scattering: the nearest lamp lies behind an optical depth of {:.2g}, as seen "
         "from the camera and from the surfaces it lights; beyond {:g} its noise is large; use "
         "--integrator path with --error 0.02, or move a lamp nearer{}",
-        *depth, k_most_depth, see_troubleshooting("Blotches, grain and spots"));
+        *depth, k_max_depth, see_troubleshooting("Blotches, grain and spots"));
 }
 
 }  // namespace uw

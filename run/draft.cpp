@@ -8,18 +8,18 @@
 
 namespace uw {
 
-void shrink_image(CameraDesc& camera, int most_width, int most_height) {
-    const int width = std::min(camera.width, most_width);
+void shrink_image(CameraDesc& camera, int max_width, int max_height) {
+    const int width = std::min(camera.width, max_width);
     const double height = static_cast<double>(camera.height) * width / camera.width;
-    resize_image(camera, width, std::clamp(static_cast<int>(std::lround(height)), 1, most_height));
+    resize_image(camera, width, std::clamp(static_cast<int>(std::lround(height)), 1, max_height));
 }
 
-ImageScene draft_of(const ImageScene& scene, int most_width, int most_height) {
+ImageScene draft_of(const ImageScene& scene, int max_width, int max_height) {
     return scene.with([&](SceneDesc& desc) {
         ImageRequest draft;
         draft.quality = "draft";
         apply_request(draft, desc);
-        shrink_image(desc.camera, most_width, most_height);
+        shrink_image(desc.camera, max_width, max_height);
     });
 }
 

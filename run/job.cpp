@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t k_most_runs = 50;  // of frames, named in a message
+constexpr std::size_t k_max_runs = 50;  // of frames, named in a message
 
 }  // namespace
 
@@ -148,7 +148,7 @@ std::string format_frame_list(std::vector<int> frames) {
     std::string text;
     std::size_t runs = 0;
     for (std::size_t i = 0; i < frames.size(); ++runs) {
-        if (runs == k_most_runs) return text + fmt::format(" and {} more", frames.size() - i);
+        if (runs == k_max_runs) return text + fmt::format(" and {} more", frames.size() - i);
         std::size_t last = i;
         while (last + 1 < frames.size() && frames[last + 1] == frames[last] + 1) ++last;
         text += fmt::format("{}{}", i == 0 ? "" : ",", frames[i]);

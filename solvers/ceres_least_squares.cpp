@@ -219,7 +219,7 @@ void solve(ResidualFunction& residual_function, LeastSquaresProblem& problem,
     }
     options.linear_solver_type = problem.blocks.empty() ? ceres::DENSE_QR : ceres::DENSE_SCHUR;
     options.linear_solver_ordering = ordering;
-    options.max_num_iterations = problem.most_iterations;
+    options.max_num_iterations = problem.max_iterations;
     options.max_num_consecutive_invalid_steps = 20;
     options.use_nonmonotonic_steps = problem.is_rough;
     options.function_tolerance = problem.tolerance;

@@ -32,7 +32,7 @@ constexpr double k_scattering = 0.8;  // of the table's water [1/m]
 
 constexpr int k_rounds_of_row = 32, k_paths_of_row_round = 2048;
 // Beyond which a comparison with the tables says nothing: of an order, and of all.
-constexpr double k_most_error_of_order = 0.1, k_most_error_of_sum = 0.02;
+constexpr double k_max_error_of_order = 0.1, k_max_error_of_sum = 0.02;
 
 // One pixel that looks along +z, so narrow that all of it looks at the same angle.
 SceneDesc scene_of(const LampTableRow& row) {
@@ -74,14 +74,14 @@ double all_orders(const PixelResult& round) {
 
 void compare_row(const LampTableRow& row, LightValidation& result) {
     const std::vector<PixelResult> rounds = rounds_of(row);
-    const auto compare = [&](const std::string& what, double truth, double most_error,
+    const auto compare = [&](const std::string& what, double truth, double max_error,
                              const auto& light_of) {
         LightMean mean;
         for (const PixelResult& round : rounds) mean.add(light_of(round));
         result.checks.push_back(
             {"path", "table",
              fmt::format("{}, {:g} m, {:g} degrees", what, row.distance, row.angle),
-             mean.mean() / truth - 1, mean.error() / truth, most_error});
+             mean.mean() / truth - 1, mean.error() / truth, max_error});
     };
     // The table's lamp is a point; ours is a sphere in which nothing is scattered. What a point
     // lamp's light leaves there shines evenly again, as the lamp does: each order lacks as much of
@@ -90,11 +90,11 @@ void compare_row(const LampTableRow& row, LightValidation& result) {
     double before = 0;
     for (std::size_t n = 1; n <= row.orders.size(); ++n) {
         const double order = row.orders[n - 1];
-        compare(fmt::format("order {}", n), order - k_lacking * before, k_most_error_of_order,
+        compare(fmt::format("order {}", n), order - k_lacking * before, k_max_error_of_order,
                 [n](const PixelResult& round) { return round.orders[n][0]; });
         before = order;
     }
-    compare("all orders", row.total - k_lacking * row.total, k_most_error_of_sum, all_orders);
+    compare("all orders", row.total - k_lacking * row.total, k_max_error_of_sum, all_orders);
 }
 
 // One pixel is drawn from each cell of a lattice over the image.
@@ -109,7 +109,7 @@ constexpr int k_samples = 16;
 constexpr double k_independent_parts = 20;
 // The standard error of the mean over the pixels, relative to all light, beyond which the
 // comparison says nothing.
-constexpr double k_most_error = 0.02;
+constexpr double k_max_error = 0.02;
 
 constexpr std::array<Layer, 4> k_part_layers{Layer::direct, Layer::backscatter,
                                              Layer::multiple_volume, Layer::multiple_surface};
@@ -297,7 +297,7 @@ class AllLightTrial {
         result_.checks.push_back(
             {"volume", "path",
              fmt::format("{}, {:g} nm", k_lights[light].name, result_.bands_nm[band]),
-             sum / count / mean, std::sqrt(variance) / mean, k_most_error,
+             sum / count / mean, std::sqrt(variance) / mean, k_max_error,
              PixelSpread{pixels_.size(), std::sqrt(squares / count) / mean,
                          std::sqrt(squares_in_errors / count), worst}});
     }

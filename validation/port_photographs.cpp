@@ -81,7 +81,7 @@ using Motion = std::array<double, 6>;
 
 /// The least residuals that a rigid motion of the corners can leave.
 std::vector<ImagePoint> refitted(const Camera& camera, const Corners& corners) {
-    constexpr int k_most_steps = 100;
+    constexpr int k_max_steps = 100;
     constexpr double k_difference = 1e-6, k_converged = 1e-12;
     Vector3 middle{0};
     for (const Point3& point : corners.points) middle += from_origin(point);
@@ -96,7 +96,7 @@ std::vector<ImagePoint> refitted(const Camera& camera, const Corners& corners) {
     std::vector<ImagePoint> residuals = residuals_at(best);
     double damping = 1e-3;
     CholeskyFactor factor;
-    for (int step = 0; step < k_most_steps; ++step) {
+    for (int step = 0; step < k_max_steps; ++step) {
         std::array<std::vector<ImagePoint>, 6> changes;
         for (std::size_t j = 0; j < changes.size(); ++j) {
             Motion beside = best;

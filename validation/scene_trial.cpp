@@ -15,7 +15,7 @@ namespace uw {
 namespace {
 
 constexpr int k_longest_side = 48;  // of the image that is compared [pixels]
-constexpr int k_most_planes = 512;  // more where shadow edges leave the finest sum rough
+constexpr int k_max_planes = 512;  // more where shadow edges leave the finest sum rough
 constexpr double k_quadrature_tolerance = 1e-5;
 
 // In a plume as rough as its voxels, interpolating columns between a lamp's rays, and linearly
@@ -219,14 +219,14 @@ class SceneTrial {
             const std::vector<Spectrum>& b = result_.images.at(right).*component.image;
             for (std::size_t band = 0; band < result_.bands_nm.size(); ++band) {
                 Check check{left, right, component, band, everywhere, count, measure.dark};
-                check.largest = largest_difference(a, b, counted, band, measure.dark);
+                check.largest = max_difference(a, b, counted, band, measure.dark);
                 check.rms = rms_difference(a, b, band);
                 check.tolerance = measure.tolerances * options_.tolerance;
                 check.rms_tolerance = 3 * options_.tolerance;
                 if (measure.coarser) {
                     const std::vector<Spectrum>& coarser = measure.coarser->*component.image;
                     check.own =
-                        own_error(largest_difference(b, coarser, counted, band, measure.dark),
+                        own_error(max_difference(b, coarser, counted, band, measure.dark),
                                   check.tolerance);
                     check.tolerance += check.own;
                     check.rms_tolerance +=
@@ -240,7 +240,7 @@ class SceneTrial {
     void sum_planes(const TrialScene& uniform) {
         PlaneSums sums = sum_planes_to_limit(
             uniform, result_.smooth,
-            {options_.tolerance, k_most_planes,
+            {options_.tolerance, k_max_planes,
              [&](const std::string& sum) { options_.say(result_.name + ": " + sum); }});
         result_.images[k_planes_limit] = std::move(sums.limit);
         result_.images[planes_name(sums.steps.back().count)] = std::move(sums.finest);

@@ -18,8 +18,8 @@ double LightCheck::deviation_in_errors() const {
 
 // Written so that NaN fails.
 bool LightCheck::passed() const {
-    return deviation_in_errors() <= k_most_errors && error <= most_error &&
-           (!spread || spread->rms_in_errors <= k_most_noise);
+    return deviation_in_errors() <= k_max_errors && error <= max_error &&
+           (!spread || spread->rms_in_errors <= k_max_noise);
 }
 
 double LightParts::all() const {

@@ -103,13 +103,13 @@ struct PixelSpread {
 struct LightCheck {
     /// A deviation beyond so many standard errors is a fault; and so is noise of single pixels of
     /// so many times the stated error.
-    static constexpr double k_most_errors = 4, k_most_noise = 2;
+    static constexpr double k_max_errors = 4, k_max_noise = 2;
 
     std::string left, right;
     std::string light;      // which: "multiple.volume, 540 nm"
     double deviation = 0;   // of the left's mean from the right's
     double error = 0;       // standard error of that
-    double most_error = 0;  // beyond which the comparison says nothing, and fails
+    double max_error = 0;  // beyond which the comparison says nothing, and fails
     std::optional<PixelSpread> spread{};
 
     double deviation_in_errors() const;

@@ -270,7 +270,7 @@ double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band) {
     return sum / static_cast<double>(image.size());
 }
 
-double largest_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
+double max_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
                           const std::vector<char>& counted, std::size_t band, double dark) {
     const double floor = dark * mean_over_pixels(b, band);
     double largest = 0;
@@ -295,15 +295,15 @@ namespace {
 
 constexpr int k_fewest_planes = 8;
 // No more shadow rays than this for a sum that is refined beyond the requested number of slabs.
-constexpr std::size_t k_most_shadow_rays = 20'000'000;
+constexpr std::size_t k_max_shadow_rays = 20'000'000;
 
 // The largest relative difference of the backscatter over smooth pixels and bands.
-double largest_change(const MethodImage& from, const MethodImage& to,
+double max_change(const MethodImage& from, const MethodImage& to,
                       const std::vector<char>& smooth, std::size_t bands) {
     double largest = 0;
     for (std::size_t band = 0; band < bands; ++band)
         largest = std::max(
-            largest, largest_difference(from.backscatter, to.backscatter, smooth, band, k_dark));
+            largest, max_difference(from.backscatter, to.backscatter, smooth, band, k_dark));
     return largest;
 }
 
@@ -326,11 +326,11 @@ PlaneSums sum_planes_to_limit(const TrialScene& uniform, const std::vector<char>
     };
     std::vector<MethodImage> sums;
     const auto rough = [&] {
-        return largest_change(sums.back(), sums[sums.size() - 2], smooth, bands) >
+        return max_change(sums.back(), sums[sums.size() - 2], smooth, bands) >
                options.tolerance;
     };
     for (int count = k_fewest_planes;
-         count <= options.most_planes || (rays_of(count) <= k_most_shadow_rays && rough());
+         count <= options.max_planes || (rays_of(count) <= k_max_shadow_rays && rough());
          count *= 2) {
         options.say(planes_name(count));
         sums.push_back(sum_over(uniform, count));
@@ -340,7 +340,7 @@ PlaneSums sum_planes_to_limit(const TrialScene& uniform, const std::vector<char>
         result.limit.backscatter[i] +=
             (result.limit.backscatter[i] - result.coarser.backscatter[i]) / 3;
     for (std::size_t n = 0; n < sums.size(); ++n) {
-        PlanesStep step{k_fewest_planes << n, largest_change(sums[n], result.limit, smooth, bands),
+        PlanesStep step{k_fewest_planes << n, max_change(sums[n], result.limit, smooth, bands),
                         0};
         if (n > 0 && step.error > 0) step.order = std::log2(result.steps.back().error / step.error);
         result.steps.push_back(step);

@@ -64,7 +64,7 @@ double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band);
 
 /// The largest difference of `a` relative to `b` over the pixels that `counted` marks; those darker
 /// than the fraction `dark` of b's mean count as that bright.
-double largest_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
+double max_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
                           const std::vector<char>& counted, std::size_t band, double dark);
 
 /// The RMS of the differences, relative to b's mean.
@@ -80,12 +80,12 @@ struct PlaneSums {
 
 struct PlaneSumOptions {
     double tolerance;  // sums are refined while they change by more [relative]
-    int most_planes;   // slabs of the finest sum, and more where it is still rough
+    int max_planes;   // slabs of the finest sum, and more where it is still rough
     std::function<void(const std::string&)> say;  // gets the name of each sum
 };
 
 /// Doubles the number of slabs until the largest change over the pixels that `smooth` marks is
-/// within the tolerance, and at least up to `most_planes`; beyond that not for more than some 20
+/// within the tolerance, and at least up to `max_planes`; beyond that not for more than some 20
 /// seconds. The midpoint rule's error falls with the square of the thickness, so the limit is
 /// (4 fine - coarse) / 3 (Richardson); where a shadow's edge crosses the ray it falls with the
 /// thickness only, and the limit may be off by as much as the last two sums differ.

@@ -13,7 +13,7 @@ namespace uw::bench {
 namespace {
 
 constexpr int k_tile = 16;  // pixels along an edge, as in the renderer
-constexpr double k_least_seconds = 0.05;
+constexpr double k_min_seconds = 0.05;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ double Floor::cpu_seconds() const {
     const double begin = process_cpu_seconds();
     double spent = 0;
     int rounds = 0;
-    while (spent < k_least_seconds) {
+    while (spent < k_min_seconds) {
         benchmark::DoNotOptimize(trace() + sum_voxels());
         spent = process_cpu_seconds() - begin;
         ++rounds;

@@ -65,7 +65,7 @@ double rmse(const std::vector<double>& a, const std::vector<double>& b) {
     return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+double max_difference(const std::vector<double>& a, const std::vector<double>& b) {
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, std::abs(a[i] - b[i]));
     return largest;
@@ -83,7 +83,7 @@ ReferenceError compare_with_reference(const AssembledScene& scene, const LayerPl
     const double scale = 1 / mean(truth);
     // If the errors e and 2e are uncorrelated, the difference is sqrt(5) e.
     return {static_cast<int>(chosen.size()), scale * rmse(measured, truth),
-            scale * largest_difference(measured, truth),
+            scale * max_difference(measured, truth),
             scale * rmse(coarse, truth) / std::sqrt(5.0)};
 }
 

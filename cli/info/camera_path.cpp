@@ -14,7 +14,7 @@ namespace uw {
 
 namespace {
 
-constexpr int k_most_points = 2000;
+constexpr int k_max_points = 2000;
 
 /// The surface between two points, by its name; empty: there is none.
 std::string surface_between(const Point3& from, const Point3& to, const Surfaces& surfaces) {
@@ -36,7 +36,7 @@ std::optional<PathSurvey> survey_path(const SceneDesc& scene, const Surfaces& su
     if (!frames) return std::nullopt;
     PathSurvey path;
     path.frames = *frames;
-    const int steps = std::min(frames->last - frames->first, k_most_points - 1);
+    const int steps = std::min(frames->last - frames->first, k_max_points - 1);
     double up = 0;
     for (int i = 0; i <= steps; ++i) {
         const double share = steps == 0 ? 0 : static_cast<double>(i) / steps;

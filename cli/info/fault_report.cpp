@@ -152,9 +152,9 @@ std::string scene_files(const FaultReportOf& of) {
 }
 
 std::string scene_text(const fs::path& file) {
-    constexpr std::size_t k_most_bytes = 64 << 20;
+    constexpr std::size_t k_max_bytes = 64 << 20;
     try {
-        return read_text_file(file, file.filename().string(), k_most_bytes, "scene");
+        return read_text_file(file, file.filename().string(), k_max_bytes, "scene");
     } catch (const std::exception& error) {
         return error.what();
     }

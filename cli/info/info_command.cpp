@@ -144,10 +144,10 @@ SequenceReport look_for_frames(const fs::path& pattern, const std::optional<int>
         throw IoError(fmt::format("{}: no file of this sequence exists; check the name",
                                   printable(sequence.pattern, 300)));
     sequence.frame = frame ? *frame : sequence.found.front();
-    constexpr std::size_t k_most_missing = 100'000;
+    constexpr std::size_t k_max_missing = 100'000;
     for (std::size_t i = 1; i < sequence.found.size(); ++i)
         for (int n = sequence.found[i - 1] + 1; n < sequence.found[i]; ++n) {
-            if (sequence.missing.size() == k_most_missing) return sequence;
+            if (sequence.missing.size() == k_max_missing) return sequence;
             sequence.missing.push_back(n);
         }
     return sequence;
@@ -164,7 +164,7 @@ VdbAdvice advise_on_frames(const InfoArguments& a, const fs::path& name, Sequenc
                            const InfoProgress& progress) {
     const FrameSurvey frames = survey_frames(a.subject, sequence.found, a.up);
     sequence.empty = frames.empty;
-    sequence.largest = largest_values(frames);
+    sequence.largest = max_values(frames);
     for (const SampledFrame& frame : frames.sampled) sequence.sampled.push_back(frame.frame);
     if (frames.sampled.empty()) return {};
     if (!a.frame) sequence.frame = frames.sampled.front().frame;
@@ -267,7 +267,7 @@ std::optional<DraftContrast> draft_contrast(Renderer& renderer, const ImageScene
     if (scene.desc().volumes.empty() || std::ranges::all_of(scene.desc().lamps, is_glow))
         return std::nullopt;
     const DraftContrast draft = draft_contrast(renderer, scene, k_draft_width);
-    if (draft.seen >= k_least_seen) return draft;
+    if (draft.seen >= k_min_seen) return draft;
     return draft_contrast(renderer, scene, k_fine_draft_width);
 }
 

@@ -91,13 +91,13 @@ DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, cons
 }
 
 ImageScene quick_draft_of(const ImageScene& scene, int width) {
-    constexpr int k_most_height = 1024;
+    constexpr int k_max_height = 1024;
     const RenderDesc::Scattering scattering = scattering_of(scene.desc().render);
     const ImageScene quick = scene.with([&](SceneDesc& desc) {
         desc.render.integrator = RenderDesc::Integrator::volume;
         desc.render.scattering = scattering;
     });
-    return draft_of(quick, width, k_most_height);
+    return draft_of(quick, width, k_max_height);
 }
 
 namespace {
@@ -226,9 +226,9 @@ namespace {
 // What is sought: a contrast well above what is plain to see, as other water and lamps will have
 // less, rays that see through most of the volume, and a volume that is no black shape.
 constexpr double k_wanted_contrast = 0.6;
-constexpr double k_most_depth = 2.5;
-constexpr double k_least_brightness = 0.03;
-constexpr int k_most_drafts = 8, k_most_pictures = 3;  // of one water and one kind of light
+constexpr double k_max_depth = 2.5;
+constexpr double k_min_brightness = 0.03;
+constexpr int k_max_drafts = 8, k_max_pictures = 3;  // of one water and one kind of light
 constexpr std::array k_waters{"jerlov-II", "jerlov-IB"};
 
 /// Counts what is rendered, for whoever waits for it.
@@ -239,7 +239,7 @@ class DraftCount {
     void next(const char* what) {
         // With and without the volume; small, finer, and in all light.
         constexpr double k_most =
-            static_cast<double>(k_waters.size()) * (k_most_drafts + k_most_pictures + 5);
+            static_cast<double>(k_waters.size()) * (k_max_drafts + k_max_pictures + 5);
         progress_(std::min(1.0, count_++ / k_most), what);
     }
 
@@ -300,7 +300,7 @@ class Drafts {
 
 /// Neither opaque nor black.
 bool is_fit(const DraftContrast& draft) {
-    return draft.depth <= k_most_depth && draft.brightness >= k_least_brightness;
+    return draft.depth <= k_max_depth && draft.brightness >= k_min_brightness;
 }
 
 bool is_good(const DraftContrast& draft) {
@@ -325,7 +325,7 @@ bool is_better(const DraftContrast& a, const DraftContrast& b) {
 /// longer becomes better.
 void improve(Drafts& drafts, int most, double& best_factor, DraftContrast& best) {
     double factor = best_factor;
-    const bool raise = best.contrast < k_wanted_contrast && best.depth < k_most_depth;
+    const bool raise = best.contrast < k_wanted_contrast && best.depth < k_max_depth;
     for (int n = 1; n < most && !is_good(best); ++n) {
         // Where most of the volume is far thinner than its densest part, in one step.
         const double step = std::clamp(1 / std::max(best.depth, 1e-12), 2.0, 1e9);
@@ -346,18 +346,18 @@ PlumeView view_in(const char* water, const VolumeDesc& volume, const Bounds& bou
     std::optional<Drafts> drafts(std::in_place, view.proposal, volume, k_draft_width,
                                  Scattering::single, count);
     view.draft = drafts->at(1);
-    if (view.draft.seen < k_least_seen) {
+    if (view.draft.seen < k_min_seen) {
         drafts.emplace(view.proposal, volume, k_fine_draft_width, Scattering::single, count);
         view.draft = drafts->at(1);
     }
-    improve(*drafts, k_most_drafts, view.factor, view.draft);
+    improve(*drafts, k_max_drafts, view.factor, view.draft);
     count.next("the light that single scattering leaves out");
     view.left_out = drafts->light_left_out(view.factor);
     // A scene is judged by its picture: other light makes another.
     drafts.emplace(view.proposal, volume, k_picture_width,
                    view.needs_all_light() ? Scattering::multiple : Scattering::single, count);
     view.draft = drafts->at(view.factor);
-    if (view.needs_all_light()) improve(*drafts, k_most_pictures, view.factor, view.draft);
+    if (view.needs_all_light()) improve(*drafts, k_max_pictures, view.factor, view.draft);
     return view;
 }
 

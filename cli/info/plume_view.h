@@ -42,7 +42,7 @@ ImageScene quick_draft_of(const ImageScene& scene, int width);
 /// The width of drafts, and of those of volumes too small to be seen in these.
 inline constexpr int k_draft_width = 128, k_fine_draft_width = 512;
 /// Volumes that cover less of the image than this fraction need the finer draft.
-inline constexpr double k_least_seen = 0.002;
+inline constexpr double k_min_seen = 0.002;
 
 /// A plume that changes the picture by less than this will hardly be noticed; at the second it is
 /// plain to see.

@@ -197,8 +197,8 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
         say("has a background of " + v.background + ": it counts as 0 outside the active voxels");
 }
 
-constexpr std::size_t k_most_sampled = 6;
-constexpr std::size_t k_most_faults = 3;
+constexpr std::size_t k_max_sampled = 6;
+constexpr std::size_t k_max_faults = 3;
 
 /// Whether a grid of the file may hold a concentration, as far as its header tells.
 bool may_hold_something(const VdbHeader& header) {
@@ -250,8 +250,8 @@ void say_domain(const VdbInspection& inspection, VdbAdvice& advice) {
     if (domain && domain->is_adaptive) {
         advice.lines.push_back("The voxel size is wrong: " + domain->description() + ".");
         if (domain->voxel) return;
-        const double step = std::pow(10, std::floor(std::log10(domain->largest_voxel())) - 3);
-        advice.voxel_size = std::floor(domain->largest_voxel() / step + 1e-6) * step;
+        const double step = std::pow(10, std::floor(std::log10(domain->max_voxel())) - 3);
+        advice.voxel_size = std::floor(domain->max_voxel() / step + 1e-6) * step;
         return;
     }
     const auto mapped = std::ranges::find_if(inspection.grids, [&](const GridInspection& grid) {
@@ -532,7 +532,7 @@ FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vecto
         try {
             look(file, printable(file.filename().string(), 300));
         } catch (const std::runtime_error& error) {
-            if (survey.faults.size() < k_most_faults) survey.faults.emplace_back(error.what());
+            if (survey.faults.size() < k_max_faults) survey.faults.emplace_back(error.what());
         }
     };
     std::vector<int> candidates;
@@ -541,7 +541,7 @@ FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vecto
             const bool holds = may_hold_something(read_vdb_header(file, name));
             (holds ? candidates : survey.empty).push_back(frame);
         });
-    const std::size_t count = std::min(candidates.size(), k_most_sampled);
+    const std::size_t count = std::min(candidates.size(), k_max_sampled);
     for (std::size_t n = 0; n < count; ++n) {
         const int frame = candidates[count == 1 ? 0 : n * (candidates.size() - 1) / (count - 1)];
         guarded(frame, [&](const std::filesystem::path& file, const std::string& name) {
@@ -556,7 +556,7 @@ FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vecto
     return survey;
 }
 
-std::vector<double> largest_values(const FrameSurvey& survey) {
+std::vector<double> max_values(const FrameSurvey& survey) {
     std::vector<double> values;
     for (const SampledFrame& frame : survey.sampled) {
         const GridInspection& grid = *likeliest_grid(frame.inspection);
@@ -569,12 +569,12 @@ namespace {
 
 constexpr double k_wanted_depth = 1.5;
 constexpr double k_large_per_small = 5;
-constexpr double k_most_small = 1e12 / k_large_per_small;  // what scenes take of both [ppm]
+constexpr double k_max_small = 1e12 / k_large_per_small;  // what scenes take of both [ppm]
 /// Beyond these no values are ppm, whatever the plume.
-constexpr double k_least_usual = 1e-6, k_most_usual = 1e6;
+constexpr double k_min_usual = 1e-6, k_max_usual = 1e6;
 constexpr std::size_t k_wanted_band = 1;         // of the default bands: 540 nm
 constexpr int k_lines = 24, k_fewest_lines = 4;  // across each side
-constexpr double k_most_regions = 2e6;           // blocks and tiles that all of them meet
+constexpr double k_max_regions = 2e6;           // blocks and tiles that all of them meet
 
 double round_to_two_digits(double value) {
     const double power = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -582,7 +582,7 @@ double round_to_two_digits(double value) {
 }
 
 /// The largest value of the grids to map; 1, that of the fog, for a level set.
-double largest_value(const VdbInspection& inspection, const VdbAdvice& advice) {
+double max_value(const VdbInspection& inspection, const VdbAdvice& advice) {
     double largest = 0;
     for (const GridInspection& grid : inspection.grids)
         if (std::ranges::count(advice.map, grid.summary.name) > 0 && grid.values)
@@ -593,8 +593,8 @@ double largest_value(const VdbInspection& inspection, const VdbAdvice& advice) {
 /// What concentration drafts begin with [ppm per unit]: 1, or for values that 1 ppm would take to
 /// no water as much as makes the largest of them 1 ppm.
 double first_small_ppm(const VdbInspection& inspection, const VdbAdvice& advice) {
-    const double largest = largest_value(inspection, advice);
-    return largest < k_least_usual || largest > k_most_usual ? 1 / largest : 1;
+    const double largest = max_value(inspection, advice);
+    return largest < k_min_usual || largest > k_max_usual ? 1 / largest : 1;
 }
 
 VolumeDesc describe(const VdbInspection& inspection, const VdbAdvice& advice) {
@@ -663,7 +663,7 @@ int affordable_lines(const GridField& field, const Bounds& bounds, int axis) {
         for (const GridVolume& volume : field.volumes())
             regions += static_cast<double>(volume.regions_along(a, b));
     const double each = std::max(1.0, regions / (k_fewest_lines * k_fewest_lines));
-    return std::clamp(static_cast<int>(std::sqrt(k_most_regions / each)), k_fewest_lines, k_lines);
+    return std::clamp(static_cast<int>(std::sqrt(k_max_regions / each)), k_fewest_lines, k_lines);
 }
 
 /// The largest optical depth per band of `depth` and of the lines along `axis`.
@@ -701,7 +701,7 @@ void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice) {
 
     const double first = desc.grids.front().small_ppm;
     const double wanted = first * k_wanted_depth / depths[1][k_wanted_band];
-    advice.small_ppm = std::min(round_to_two_digits(wanted), k_most_small);
+    advice.small_ppm = std::min(round_to_two_digits(wanted), k_max_small);
     advice.large_ppm = k_large_per_small * advice.small_ppm;
     advice.bands_nm = water.bands_nm;
     advice.optical_depth.clear();
@@ -723,7 +723,7 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
     }
     advice.view = view_plume(desc, advice.bounds, progress);
     const double small_ppm =
-        std::min(round_to_two_digits(advice.view.factor * advice.small_ppm), k_most_small);
+        std::min(round_to_two_digits(advice.view.factor * advice.small_ppm), k_max_small);
     for (double& depth : advice.optical_depth) depth *= small_ppm / advice.small_ppm;
     advice.small_ppm = small_ppm;
     advice.large_ppm = k_large_per_small * small_ppm;
@@ -843,9 +843,9 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
 
 /// What values may mean that are far from any concentration in ppm.
 void say_unit(const VdbInspection& inspection, VdbAdvice& advice) {
-    const double largest = largest_value(inspection, advice);
+    const double largest = max_value(inspection, advice);
     const std::string& name = advice.map.front();
-    if (largest > k_most_usual)
+    if (largest > k_max_usual)
         advice.lines.push_back(fmt::format(
             "Its values reach {:.3g}, more than a million ppm: they may be numbers of particles, "
             "whose volume depends on their size. For a grid of particles per m3 write, in place of "
@@ -853,7 +853,7 @@ void say_unit(const VdbInspection& inspection, VdbAdvice& advice) {
             "{{silt: {{library: silt}}}}}} or another species; a particle of diameter d has pi/6 "
             "d^3, at 10 um 5.2e-10 ppm per particle and m3.",
             largest, quoted_name(name)));
-    else if (largest < k_least_usual)
+    else if (largest < k_min_usual)
         advice.lines.push_back(fmt::format(
             "Its values reach {:.3g} only: they may be fractions by volume, of which 1 is 1e6 ppm "
             "(write {}: {{small: 1e6, large: 0}}), or masses in kg/m3, with a species {{silt: 1000 "
@@ -903,7 +903,7 @@ VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
 }
 
 void say_range(const FrameSurvey& frames, VdbAdvice& advice) {
-    const std::vector<double> largest = largest_values(frames);
+    const std::vector<double> largest = max_values(frames);
     if (largest.size() < 2) return;
     const auto [least, most] = std::ranges::minmax_element(largest);
     const auto frame_of = [&](const auto& it) {

@@ -64,7 +64,7 @@ FrameSurvey survey_frames(const std::filesystem::path& pattern, const std::vecto
 
 /// The largest value of the grid likeliest to be a concentration, per sampled frame; 1, that of the
 /// fog, for a level set.
-std::vector<double> largest_values(const FrameSurvey& survey);
+std::vector<double> max_values(const FrameSurvey& survey);
 
 /// Chooses `small_ppm` and `large_ppm` of the grids in `advice.map`, at `advice.scale`, such that
 /// the optical depth is 1.5 at 540 nm, with small and large particles each contributing about half

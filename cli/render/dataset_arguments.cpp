@@ -43,7 +43,7 @@ constexpr const char* k_dataset_exit_codes = R"(
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
 130 interrupted. More: docs/datasets.md)";
 
-constexpr std::size_t k_most_shards = 1'000'000;
+constexpr std::size_t k_max_shards = 1'000'000;
 
 ShardArgument shard_in(const std::string& text) {
     ShardArgument shard;
@@ -52,7 +52,7 @@ ShardArgument shard_in(const std::string& text) {
     if (fault == std::errc() && slash != end && *slash == '/') {
         const auto [last, error] = std::from_chars(slash + 1, end, shard.count);
         if (error == std::errc() && last == end && shard.number >= 1 &&
-            shard.number <= shard.count && shard.count <= k_most_shards)
+            shard.number <= shard.count && shard.count <= k_max_shards)
             return shard;
     }
     throw UsageError(fmt::format("--shard: expected I/N with 1 <= I <= N, such as 3/8; found '{}'",
@@ -159,7 +159,7 @@ Options dataset_options(DatasetArguments& a) {
                                    "draft, final or exact, as render has them");
     quality.value = Option::Value::word;
     for (const auto& [word, meaning] : k_quality_names) quality.words.emplace_back(word);
-    options.integer("--samples", "N", a.image.samples, 1, k_most_paths,
+    options.integer("--samples", "N", a.image.samples, 1, k_max_paths,
                     "samples per pixel; default: the scene's");
     add_output_options(options, a);
     options.parsed(

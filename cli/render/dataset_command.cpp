@@ -55,7 +55,7 @@ std::shared_ptr<const ColourView> view_of(const RenderDesc& render) {
 }
 
 constexpr int k_draft_width = 160;  // of the images that exposures follow from [pixels]
-constexpr std::size_t k_most_drafts = 5;
+constexpr std::size_t k_max_drafts = 5;
 
 /// What has to do with views of a data set, and tells its user how far it is.
 class ViewClient : public RunClient {
@@ -478,13 +478,13 @@ class DatasetRun {
     void look_first() {
         const DatasetDefinition& definition = set_.definition;
         const std::size_t views = definition.frames.size() * definition.cameras.size();
-        const std::size_t of_first = definition.exposure ? 1 : std::min(views, k_most_drafts);
+        const std::size_t of_first = definition.exposure ? 1 : std::min(views, k_max_drafts);
         Job job{scenes_, {}};
         for (std::size_t i = 0; i < of_first; ++i) {
             const std::size_t index = of_first > 1 ? i * (views - 1) / (of_first - 1) : 0;
             job.images.push_back(image_of(definition.view(index)));
         }
-        const std::size_t draws = std::min(definition.draws.size(), k_most_drafts);
+        const std::size_t draws = std::min(definition.draws.size(), k_max_drafts);
         for (std::size_t i = 1; i < draws; ++i)
             job.images.push_back(image_of({i * (definition.draws.size() - 1) / (draws - 1), 0, 0}));
         FirstLook first(definition, of_first, job.images.size(), a_.image.progress);

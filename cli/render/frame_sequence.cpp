@@ -120,11 +120,11 @@ void sort_by_format(const RenderArguments& a, OutputFiles& files) {
                           (format->holds == OutputFormat::Holds::either && !a.precision.empty());
     if (format->library != OutputFormat::Library::openexr) refuse_exr_options(a, *format, is_light);
     if (a.is_aces) refuse_with_aces(a);
-    if (!is_light && a.preview_bits.value_or(8) > format->most_bits)
+    if (!is_light && a.preview_bits.value_or(8) > format->max_bits)
         throw UsageError(
             fmt::format("--preview-bits {}: a {} has {} bits per channel; give a name that ends in "
                         ".png or .tif",
-                        *a.preview_bits, format->name, format->most_bits));
+                        *a.preview_bits, format->name, format->max_bits));
     try {
         require_writer(*format);
     } catch (const UsageError& error) {

@@ -199,7 +199,7 @@ constexpr std::array k_columns{
     NumberColumn{"irradiance_median", surfaces<&Evenness::median>},
     NumberColumn{"irradiance_p95", surfaces<&Evenness::percentile95>},
     NumberColumn{"irradiance_greatest", surfaces<&Evenness::greatest>},
-    NumberColumn{"evenness", surfaces<&Evenness::least_to_mean>},
+    NumberColumn{"evenness", surfaces<&Evenness::min_to_mean>},
     NumberColumn{"evenness_p5", surfaces<&Evenness::percentile5_to_mean>},
 };
 

@@ -43,10 +43,10 @@ Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read 
 
 namespace {
 
-constexpr int k_most_variations = 1'000'000;
+constexpr int k_max_variations = 1'000'000;
 
 // The most layers of --orders, of either kind.
-constexpr int k_most_orders = 64;
+constexpr int k_max_orders = 64;
 
 /// Restricts `option` to the words of `names`, a table of words and their meanings.
 void accept_words(Option& option, const auto& names) {
@@ -107,7 +107,7 @@ Options render_options(RenderArguments& a) {
         },
         "render these frames, or all in which everything that moves has a pose; file names "
         "contain %04d, ####, $F4 or {frame}");
-    options.integer("--variations", "N", a.variation_count, 1, k_most_variations,
+    options.integer("--variations", "N", a.variation_count, 1, k_max_variations,
                     "render N scenes whose values are drawn as the scene's section variations "
                     "says, and write a manifest of the values");
     options.parsed(
@@ -150,14 +150,14 @@ Options render_options(RenderArguments& a) {
         k_preview_bits);
     options.output("--contact-sheet", "OUT.png", a.contact_sheet,
                    "write small pictures of all images, side by side");
-    options.integer("--samples", "N", a.samples, 1, k_most_paths,
+    options.integer("--samples", "N", a.samples, 1, k_max_paths,
                     fmt::format("surface samples per pixel, 1 to {}; with --integrator path light "
                                 "paths, up to {}",
-                                k_most_samples, k_most_paths));
+                                k_max_samples, k_max_paths));
     options.number("--error", "R", a.error, 0, 1,
                    "with --integrator path, instead of --samples: until the standard error is "
                    "below this fraction of the image's mean");
-    options.integer("--orders", "N", a.orders, 1, k_most_orders,
+    options.integer("--orders", "N", a.orders, 1, k_max_orders,
                     "with --integrator path: write layers of the light scattered, and reflected, "
                     "0 to N times");
     accept_words(options.text("--quality", "NAME", a.quality,

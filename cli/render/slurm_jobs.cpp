@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int k_least_minutes = 10;  // of a job: nodes differ, and file systems wait
-constexpr int k_least_megabytes = 500;
+constexpr int k_min_minutes = 10;  // of a job: nodes differ, and file systems wait
+constexpr int k_min_megabytes = 500;
 constexpr double k_bytes_per_s = 20e6;  // that a merging job reads and checks at least
-constexpr int k_most_restarts = 20;     // of a task that was killed
+constexpr int k_max_restarts = 20;     // of a task that was killed
 
 int whole_minutes(double seconds) {
-    return std::max(k_least_minutes, static_cast<int>(std::ceil(k_time_margin * seconds / 60)));
+    return std::max(k_min_minutes, static_cast<int>(std::ceil(k_time_margin * seconds / 60)));
 }
 
 /// "0-01:40:00".
@@ -66,7 +66,7 @@ if [ "$status" -ge 128 ] && [ "${{SLURM_RESTART_COUNT:-0}}" -lt {} ]; then
 fi
 exit "$status"
 )",
-                       command, k_most_restarts);
+                       command, k_max_restarts);
 }
 
 }  // namespace
@@ -84,7 +84,7 @@ int task_minutes(const SlurmRequest& r) {
 
 int task_megabytes(const SlurmRequest& r) {
     const double wanted = k_memory_margin * static_cast<double>(r.measured.memory_bytes) / 1048576;
-    return std::max(k_least_megabytes, static_cast<int>(std::ceil(wanted / 100)) * 100);
+    return std::max(k_min_megabytes, static_cast<int>(std::ceil(wanted / 100)) * 100);
 }
 
 int merge_minutes(const SlurmRequest& r) {
@@ -107,8 +107,8 @@ std::string task_script(const SlurmRequest& r) {
                m.next_seconds, static_cast<double>(m.memory_bytes) / 1048576,
                (r.moments + static_cast<std::size_t>(r.tasks) - 1) /
                    static_cast<std::size_t>(r.tasks),
-               counted(r.moments, "moment"), k_time_margin, k_least_minutes, k_memory_margin,
-               k_least_megabytes) +
+               counted(r.moments, "moment"), k_time_margin, k_min_minutes, k_memory_margin,
+               k_min_megabytes) +
            restarting(fmt::format("{} --quiet --threads {} --shard \"$SLURM_ARRAY_TASK_ID/{}\"",
                                   r.command, m.threads, r.tasks));
 }

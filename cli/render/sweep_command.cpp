@@ -29,7 +29,7 @@ namespace uw {
 
 namespace {
 
-constexpr double k_most_axis_values = 1000;
+constexpr double k_max_axis_values = 1000;
 
 /// The numbers of "first:last:step"; none if `text` is something else.
 std::optional<std::array<double, 3>> range_in(std::string_view text) {
@@ -59,7 +59,7 @@ std::optional<ValueAxis> sweep_axis(const std::string& override) {
     if (step == 0) fail("the step is 0; give FIRST:LAST:STEP, such as -1.2:-0.2:0.2");
     // The ends belong to it, though their distance be a multiple of the step up to rounding only.
     const double count = std::floor(std::abs((last - first) / step) + 1e-9) + 1;
-    if (count > k_most_axis_values) fail("more than 1000 values; give a larger step");
+    if (count > k_max_axis_values) fail("more than 1000 values; give a larger step");
     if (count < 2) fail("the step is larger than the range; give a smaller one");
     ValueAxis axis{override.substr(0, equals), {}};
     const double signed_step = std::copysign(step, last - first);
@@ -145,10 +145,10 @@ void check_axes(const SweepArguments& a) {
                 "of as many",
                 printable(companion.key, 200), companion.values.size(),
                 printable(a.grid.axes.front().key, 200), a.grid.axes.front().values.size()));
-    constexpr std::size_t k_most_pictures = 10000;
-    if (a.grid.count() > k_most_pictures)
+    constexpr std::size_t k_max_pictures = 10000;
+    if (a.grid.count() > k_max_pictures)
         throw UsageError(fmt::format("--set: {} pictures, more than {}; give larger steps",
-                                     a.grid.count(), k_most_pictures));
+                                     a.grid.count(), k_max_pictures));
 }
 
 namespace {

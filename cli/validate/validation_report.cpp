@@ -91,15 +91,15 @@ ReportTable parts_of(const LightValidation& light) {
 std::string deviations_plot(const LightValidation& light) {
     PlotCurve points{"checks", {}, {}, plot_colour::k_blue, "", 0, true};
     PlotCurve above{"", {}, {}, plot_colour::k_orange, "6 3"}, below = above;
-    above.label = fmt::format("limit: {:g}", LightCheck::k_most_errors);
+    above.label = fmt::format("limit: {:g}", LightCheck::k_max_errors);
     for (std::size_t i = 0; i < light.checks.size(); ++i) {
         const LightCheck& check = light.checks[i];
         const auto at = static_cast<double>(i + 1);
         points.x.push_back(at);
         points.y.push_back(check.error > 0 ? check.deviation / check.error : 0);
         for (PlotCurve* limit : {&above, &below}) limit->x.push_back(at);
-        above.y.push_back(LightCheck::k_most_errors);
-        below.y.push_back(-LightCheck::k_most_errors);
+        above.y.push_back(LightCheck::k_max_errors);
+        below.y.push_back(-LightCheck::k_max_errors);
     }
     PlotPanel panel;
     panel.title = "Deviations";

@@ -181,13 +181,13 @@ CsvTable read_embedded_table(std::string_view name) {
 
 namespace {
 
-constexpr std::size_t k_largest_file = std::size_t{4} << 20;
+constexpr std::size_t k_max_file = std::size_t{4} << 20;
 
 }  // namespace
 
 CsvTable read_csv_file(const std::filesystem::path& file, const std::string& where) {
     const std::string subject = fmt::format("{}: {}", where, printable(file.string(), 300));
-    return CsvTable(read_text_file(file, subject, k_largest_file, "table"),
+    return CsvTable(read_text_file(file, subject, k_max_file, "table"),
                     printable(file.filename().string(), 300));
 }
 

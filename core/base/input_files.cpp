@@ -476,23 +476,23 @@ std::string other_format(std::string_view bytes, const std::filesystem::path& fi
 }
 
 std::string read_text_file(const std::filesystem::path& file, const std::string& subject,
-                           std::size_t most_bytes, std::string_view noun, Pipes pipes) {
+                           std::size_t max_bytes, std::string_view noun, Pipes pipes) {
     admit(file, subject, noun, NamedBy::scene, pipes);
     const OpenFile open(file);
     std::string text;
     ::ssize_t count = 1;
-    while (count > 0 && text.size() <= most_bytes) {
+    while (count > 0 && text.size() <= max_bytes) {
         const std::size_t had = text.size();
-        text.resize(std::min(had + std::max(had, k_first_part), most_bytes + 1));
+        text.resize(std::min(had + std::max(had, k_first_part), max_bytes + 1));
         count = open.read(&text[had], text.size() - had);
         text.resize(had + static_cast<std::size_t>(std::max<::ssize_t>(count, 0)));
     }
     if (count < 0) throw IoError(fmt::format("{}: cannot be read; check its permissions", subject));
-    if (text.size() > most_bytes) {
+    if (text.size() > max_bytes) {
         if (const std::string other = other_format(text, file, noun); !other.empty())
             throw InputError(fmt::format("{}: {}", subject, other));
         throw InputError(fmt::format("{}: is larger than {} MiB; this is not a valid {}", subject,
-                                     most_bytes >> 20, noun));
+                                     max_bytes >> 20, noun));
     }
     return text;
 }

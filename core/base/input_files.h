@@ -124,11 +124,11 @@ std::string other_format(std::string_view bytes, const std::filesystem::path& fi
 /// is read until it ends; one that nobody writes to is empty.
 enum class Pipes { refused, read };
 
-/// The unmodified contents of a text file of at most `most_bytes`, which is admitted as by
+/// The unmodified contents of a text file of at most `max_bytes`, which is admitted as by
 /// admit_input. Throws as that does; IoError if the file cannot be read; InputError if it is
 /// larger.
 std::string read_text_file(const std::filesystem::path& file, const std::string& subject,
-                           std::size_t most_bytes, std::string_view noun,
+                           std::size_t max_bytes, std::string_view noun,
                            Pipes pipes = Pipes::refused);
 
 }  // namespace uw

@@ -35,9 +35,9 @@ fs::path checked(const fs::path& target) {
     // Inaccessible paths are detected when the file is created, with a better message.
     std::error_code error;
     fs::path resolved = target;
-    constexpr int k_most_links = 40;  // as many as Linux follows
+    constexpr int k_max_links = 40;  // as many as Linux follows
     for (int links = 0; fs::is_symlink(fs::symlink_status(resolved, error)); ++links) {
-        if (links == k_most_links) fail(target, "its symbolic links form a loop");
+        if (links == k_max_links) fail(target, "its symbolic links form a loop");
         // Relative to the link's folder; its target need not exist yet.
         resolved = resolved.parent_path() / fs::read_symlink(resolved, error);
         if (error) fail(target, error.message());

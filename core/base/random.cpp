@@ -60,7 +60,7 @@ double draw_random(std::uint64_t seed, std::string_view key, std::size_t compone
 
 namespace {
 
-constexpr double k_least_mean_of_rejection = 30;  // the method needs 10
+constexpr double k_min_mean_of_rejection = 30;  // the method needs 10
 
 /// By adding up the probabilities of 0, 1, 2, ...
 double by_inversion(double mean, double u) {
@@ -76,8 +76,8 @@ double by_inversion(double mean, double u) {
 
 /// ln k! - (k ln k - k + ln(2 pi k) / 2), k >= 1.
 double stirling_error(double k) {
-    constexpr double k_least_of_series = 16;  // its next term is 1e-13
-    if (k < k_least_of_series) {
+    constexpr double k_min_of_series = 16;  // its next term is 1e-13
+    if (k < k_min_of_series) {
         double factorial = 1;
         for (double i = 2; i <= k; ++i) factorial *= i;  // exact
         return std::log(factorial) -
@@ -117,7 +117,7 @@ double by_rejection(double mean, PathRandom& random) {
 
 double poisson(double mean, PathRandom& random) {
     if (!(mean > 0)) return 0;
-    if (mean < k_least_mean_of_rejection) return by_inversion(mean, random.next());
+    if (mean < k_min_mean_of_rejection) return by_inversion(mean, random.next());
     return by_rejection(mean, random);
 }
 

@@ -191,14 +191,14 @@ std::shared_ptr<const FileSurfaces> MeshStore::load(const GeometryDesc& desc,
 
 namespace {
 
-constexpr std::uint64_t k_most_probes = 1 << 16;
+constexpr std::uint64_t k_max_probes = 1 << 16;
 
 // How many times triangles may cover a cube's face. A lawn of 10^5 blades of grass to a square
 // metre comes to a hundredth of it.
-constexpr double k_most_coverage = 4096;
+constexpr double k_max_coverage = 4096;
 
 // From fewer of its triangles, little is known of a cube.
-constexpr std::size_t k_least_samples = 64;
+constexpr std::size_t k_min_samples = 64;
 
 struct Sample {
     std::uint64_t cube = 0;  // hashed
@@ -237,7 +237,7 @@ Sample sample_of(const Corners& corners) {
 /// Takes one of every `stride` triangles, and not always the same one, since objects repeat.
 std::vector<Sample> samples_of(const SceneObjects& objects, std::uint64_t stride) {
     std::vector<Sample> samples;
-    samples.reserve(k_most_probes);
+    samples.reserve(k_max_probes);
     const auto next = [&] {
         constexpr double k_golden = 0.6180339887498949;
         const double turns = static_cast<double>(samples.size()) * k_golden;
@@ -267,8 +267,8 @@ std::optional<TriangleOverlap> find_overlap(const SceneObjects& objects) {
     std::uint64_t triangles = 0;
     for (std::size_t number = 0; number < objects.placed_count(); ++number)
         triangles += objects.placed(number).object.mesh.triangle_count();
-    if (static_cast<double>(triangles) < k_most_coverage) return std::nullopt;
-    const std::uint64_t stride = triangles / k_most_probes + 1;
+    if (static_cast<double>(triangles) < k_max_coverage) return std::nullopt;
+    const std::uint64_t stride = triangles / k_max_probes + 1;
     std::vector<Sample> samples = samples_of(objects, stride);
     std::ranges::sort(samples, {}, &Sample::cube);
     for (auto begin = samples.begin(); begin != samples.end();) {
@@ -276,7 +276,7 @@ std::optional<TriangleOverlap> find_overlap(const SceneObjects& objects) {
         auto end = begin;
         for (; end != samples.end() && end->cube == begin->cube; ++end) coverage += end->coverage;
         const auto count = static_cast<std::size_t>(end - begin);
-        if (count >= k_least_samples && coverage * static_cast<double>(stride) > k_most_coverage) {
+        if (count >= k_min_samples && coverage * static_cast<double>(stride) > k_max_coverage) {
             const PlacedMesh mesh = objects.placed(begin->mesh);
             return TriangleOverlap{static_cast<double>(count * stride),
                                    mesh.corner(begin->triangle, 0),
@@ -427,10 +427,10 @@ class Builder {
 
     void extend_bounds(const GeometryDesc& desc, const Bounds& bounds) {
         for (int axis = 0; axis < 3; ++axis) {
-            if (!(bounds.min[axis] >= -k_largest_coordinate &&
-                  bounds.max[axis] <= k_largest_coordinate)) {
+            if (!(bounds.min[axis] >= -k_max_coordinate &&
+                  bounds.max[axis] <= k_max_coordinate)) {
                 throw InputError(fmt::format("{}: extends beyond {:g} m; check its transform",
-                                             desc.where, k_largest_coordinate));
+                                             desc.where, k_max_coordinate));
             }
         }
         objects_.bounds.extend(bounds);

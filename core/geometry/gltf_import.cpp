@@ -59,8 +59,8 @@ void read_shift(const GltfDocument& document, const Json& owner, GltfCamera& cam
     if (found == owner.end() || !found->is_object()) return;
     camera.shift_x = custom_number(*found, "shift_x", camera.shift_x);
     camera.shift_y = custom_number(*found, "shift_y", camera.shift_y);
-    constexpr double k_most_shift = 10;  // Blender's own limit
-    if (std::abs(camera.shift_x) > k_most_shift || std::abs(camera.shift_y) > k_most_shift) {
+    constexpr double k_max_shift = 10;  // Blender's own limit
+    if (std::abs(camera.shift_x) > k_max_shift || std::abs(camera.shift_y) > k_max_shift) {
         document.fail("a glTF camera has a lens shift of more than 10 images");
     }
     const auto fit = found->find("sensor_fit");

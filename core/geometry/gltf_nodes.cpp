@@ -265,15 +265,15 @@ GltfPoses gltf_poses(const GltfDocument& document, GltfBytes& bytes, double time
 
 namespace {
 
-constexpr std::size_t k_most_listed = 6;
+constexpr std::size_t k_max_listed = 6;
 
 /// "'a', 'b' and 3 more" of nodes by index.
 std::string listed_nodes(const GltfDocument& document, const std::set<std::size_t>& nodes) {
     std::string text;
     std::size_t count = 0;
     for (const std::size_t index : nodes) {
-        if (count++ == k_most_listed) {
-            return text + fmt::format(" and {} more", nodes.size() - k_most_listed);
+        if (count++ == k_max_listed) {
+            return text + fmt::format(" and {} more", nodes.size() - k_max_listed);
         }
         std::string name = document.list("nodes")[index].value("name", "");
         if (name.empty()) name = fmt::format("node{}", index);

@@ -151,7 +151,7 @@ using Json = nlohmann::json;
 
 // A copy of a triangle takes some 100 bytes with Embree's structure over it, an instance a thousand
 // and more of every ray's time: meshes up to this size are copied to each node.
-constexpr std::uint64_t k_most_copied_triangles = 32;
+constexpr std::uint64_t k_max_copied_triangles = 32;
 
 constexpr std::uint64_t k_triangle_mode = 4, k_last_mode = 6;
 
@@ -218,7 +218,7 @@ class GltfContents {
     }
 
     bool is_shared(std::size_t mesh) const {
-        return uses_[mesh].size() > 1 && triangles_of(mesh) > k_most_copied_triangles;
+        return uses_[mesh].size() > 1 && triangles_of(mesh) > k_max_copied_triangles;
     }
 
     void place(std::size_t mesh, const MeshUse& use, std::vector<GltfPlacement>& to) const {

@@ -199,7 +199,7 @@ std::vector<std::string> libraries_of_obj(const std::filesystem::path& file) {
 
 namespace {
 
-constexpr std::size_t k_largest_library = std::size_t{16} << 20;
+constexpr std::size_t k_max_library = std::size_t{16} << 20;
 
 /// What is lost with a statement that cannot be used; empty if nothing is.
 std::string_view loss_of(std::string_view keyword) {
@@ -215,7 +215,7 @@ std::string_view loss_of(std::string_view keyword) {
 class Library {
   public:
     explicit Library(const std::filesystem::path& file) : name_(file.string()) {
-        const std::string text = read_text_file(file, name_, k_largest_library, "material library");
+        const std::string text = read_text_file(file, name_, k_max_library, "material library");
         is_of_blender_ = text.starts_with("# Blender");
         for (std::size_t begin = 0; begin < text.size();) {
             const std::size_t end = std::min(text.find('\n', begin), text.size());

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t k_most_names = 6;  // of a warning
+constexpr std::size_t k_max_names = 6;  // of a warning
 
 bool is_file(const fs::path& file) {
     std::error_code status;
@@ -165,8 +165,8 @@ class Materials {
         std::string text;
         std::size_t count = 0;
         for (const std::string& name : names) {
-            if (count++ == k_most_names) {
-                text += fmt::format(" and {} more", names.size() - k_most_names);
+            if (count++ == k_max_names) {
+                text += fmt::format(" and {} more", names.size() - k_max_names);
                 break;
             }
             text += fmt::format("{}'{}'", text.empty() ? "" : ", ", printable(name));
@@ -242,10 +242,10 @@ std::vector<fs::path> files_named_by_obj(const fs::path& obj_file) {
 namespace {
 
 // What fits a large machine, not the format's limit.
-constexpr std::size_t k_most_corners = 1'500'000'000;
+constexpr std::size_t k_max_corners = 1'500'000'000;
 // Combinations at one position that are looked through for a corner's own. A tip where more meet
 // has some of them twice, which nobody sees; time stays proportional to the corners.
-constexpr int k_most_compared = 64;
+constexpr int k_max_compared = 64;
 
 /// Makes vertices of the file's positions, texture coordinates and normals, each combination once.
 class ObjMesh {
@@ -308,7 +308,7 @@ class ObjMesh {
         const std::uint32_t normal = has_normals_ ? corner.normal : 0;
         std::uint32_t& first = first_of_[corner.position];
         std::uint32_t known = first;
-        for (int k = 0; k < k_most_compared && known != ObjFile::k_none; ++k) {
+        for (int k = 0; k < k_max_compared && known != ObjFile::k_none; ++k) {
             const Vertex& vertex = vertices_[known];
             if (vertex.uv == uv && vertex.normal == normal) return known;
             known = vertex.next;
@@ -369,7 +369,7 @@ class ObjMesh {
 MeshFile read_obj(const std::filesystem::path& file, bool is_pbr,
                   std::vector<std::string>& warnings) {
     ObjFile source = read_obj_file(file);
-    if (source.corners.size() > k_most_corners) {
+    if (source.corners.size() > k_max_corners) {
         throw InputError(file.string() +
                          ": more than 500 million triangles; split or thin out the mesh");
     }

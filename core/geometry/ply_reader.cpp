@@ -235,7 +235,7 @@ namespace {
 constexpr std::uint32_t k_no_vertex = std::numeric_limits<std::uint32_t>::max();
 
 /// Minimum size in bytes of one entry of `element` in the file.
-std::uint64_t least_size(const PlyElement& element, PlyEncoding encoding) {
+std::uint64_t min_size(const PlyElement& element, PlyEncoding encoding) {
     std::uint64_t size = 0;
     for (const PlyProperty& property : element.properties) {
         if (encoding == PlyEncoding::ascii) {
@@ -250,7 +250,7 @@ std::uint64_t least_size(const PlyElement& element, PlyEncoding encoding) {
 /// Ensures that no loop or allocation follows a forged count.
 void check_counts(const PlyHeader& header, std::uint64_t file_size, const std::string& name) {
     for (const PlyElement& element : header.elements) {
-        const std::uint64_t size = least_size(element, header.encoding);
+        const std::uint64_t size = min_size(element, header.encoding);
         // The last number of an ascii file need not be followed by white space.
         if (size > 0 && element.count > (file_size + 1) / size) {
             throw InputError(

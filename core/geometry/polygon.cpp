@@ -16,7 +16,7 @@ namespace {
 
 /// The most corners of a polygon whose rest may become a fan: its triangles overlap, and rays have
 /// to pay for that.
-constexpr std::size_t k_most_fan_corners = 1000;
+constexpr std::size_t k_max_fan_corners = 1000;
 /// Steps of the search for ears, of some 15 ns. Outlines of what was made, not spun, need some 20
 /// per corner; small ones may need what they like.
 constexpr std::size_t k_steps = 100'000, k_steps_per_corner = 200;
@@ -194,7 +194,7 @@ void triangulate_polygon(std::span<const std::uint32_t> corners, std::span<const
         tried = is_ear ? 0 : tried + 1;
         tip = b.after;
     }
-    if (left > 3 && corners.size() > k_most_fan_corners) fail("crosses itself");
+    if (left > 3 && corners.size() > k_max_fan_corners) fail("crosses itself");
     const auto first = static_cast<std::size_t>(std::ranges::find(polygon, true, &Corner::is_left) -
                                                 polygon.begin());
     for (std::size_t k = polygon[first].after; polygon[k].after != first; k = polygon[k].after)

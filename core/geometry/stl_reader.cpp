@@ -30,11 +30,11 @@ constexpr std::size_t k_normal_bytes = 12, k_vertices_bytes = 36;
 constexpr std::uint64_t k_triangles_per_read = 4096;
 constexpr std::size_t k_padding = 4;  // Embree reads 16 bytes at the last vertex
 // What fits a large machine; places of vertices have 32 bits.
-constexpr std::uint64_t k_most_triangles = 500'000'000;
+constexpr std::uint64_t k_max_triangles = 500'000'000;
 
 [[noreturn]] void refuse_size(const std::string& name) {
     throw InputError(fmt::format("{}: more than {} million triangles; split or thin out the mesh",
-                                 name, k_most_triangles / 1'000'000));
+                                 name, k_max_triangles / 1'000'000));
 }
 
 /// Whether it is this word, in capitals or not.
@@ -82,7 +82,7 @@ TriangleMesh read_binary(std::istream& in, const Beginning& beginning, const std
             fmt::format("{}: is no STL text, and does not hold the {} triangles that it promises "
                         "if it is binary; export the mesh again",
                         name, count));
-    if (count > k_most_triangles) refuse_size(name);
+    if (count > k_max_triangles) refuse_size(name);
     TriangleMesh mesh;
     mesh.positions.reserve(9 * count + k_padding);
     mesh.triangles.reserve(3 * count);
@@ -161,7 +161,7 @@ class StlText {
                             name_, line_, corners_));
         corners_ = 0;
         append_triangle(mesh_);
-        if (mesh_.positions.size() > 9 * k_most_triangles) refuse_size(name_);
+        if (mesh_.positions.size() > 9 * k_max_triangles) refuse_size(name_);
     }
 
     std::string name_;

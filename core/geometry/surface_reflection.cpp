@@ -15,7 +15,7 @@ double dielectric_f0(double ior) {
 namespace {
 
 double alpha_squared(double roughness) {  // alpha is the roughness squared
-    const double rough = std::max(roughness, k_smallest_roughness);
+    const double rough = std::max(roughness, k_min_roughness);
     return rough * rough * rough * rough;
 }
 

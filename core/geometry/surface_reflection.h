@@ -13,7 +13,7 @@ inline constexpr double k_surface_water_index = 1.334;
 
 /// Lower bound to which roughness is clamped: on a smoother surface the highlight of a point lamp
 /// is narrower than 0.3 degrees, too small for the pixels' samples to resolve it reliably.
-inline constexpr double k_smallest_roughness = 0.05;
+inline constexpr double k_min_roughness = 0.05;
 
 /// Reflectance at normal incidence of a dielectric of refractive index `ior` under water,
 /// ((n - n_w)/(n + n_w))^2; an `ior` of 0 reflects everything (KHR_materials_ior).

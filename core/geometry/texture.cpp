@@ -57,7 +57,7 @@ Texture::Texture(const PixelImage& image, TextureEncoding encoding, bool keep_al
 }
 
 Texture::Texture(std::shared_ptr<const PartialImage> image, const std::string& name,
-                 TextureEncoding encoding, bool keep_alpha, std::int64_t most_texels)
+                 TextureEncoding encoding, bool keep_alpha, std::int64_t max_texels)
     : file_(std::move(image)),
       name_(name),
       is_encoded_(encoding == TextureEncoding::srgb && !file_->is_linear),
@@ -70,7 +70,7 @@ Texture::Texture(std::shared_ptr<const PartialImage> image, const std::string& n
         level.columns = static_cast<double>(file_->width) / step;
         level.rows = static_cast<double>(file_->height) / step;
         level.halvings = halvings;
-        const bool is_in_memory = std::int64_t{level.width} * level.height <= most_texels;
+        const bool is_in_memory = std::int64_t{level.width} * level.height <= max_texels;
         if (is_in_memory) sum_lines(level);
         levels_.push_back(std::move(level));
         if (is_in_memory) break;
@@ -333,8 +333,8 @@ void Texture::visit(double u, double v, const TextureLookup& lookup, const Textu
     }
     // The height over the longer side, as wide as the parallelogram is beside it.
     const double area = std::abs(along[0] * beside[1] - along[1] * beside[0]) * width() * height();
-    constexpr double k_most_lookups = 16;
-    const double width_beside = std::max({area / length, length / k_most_lookups, 1.0});
+    constexpr double k_max_lookups = 16;
+    const double width_beside = std::max({area / length, length / k_max_lookups, 1.0});
     const int count = static_cast<int>(std::ceil(length / width_beside - 1e-9));
     const double last = static_cast<double>(levels_.size() - 1);
     const double level = std::min(std::log2(width_beside), last);

@@ -55,11 +55,11 @@ class Texture {
                      bool keep_alpha = false);
 
     /// The same of an image that is read in parts: what is in memory are images of at most
-    /// `most_texels`, made of all of it here; finer ones are looked up in the file. Throws
+    /// `max_texels`, made of all of it here; finer ones are looked up in the file. Throws
     /// InputError if it cannot be read; messages call it `name`.
     Texture(std::shared_ptr<const PartialImage> image, const std::string& name,
             TextureEncoding encoding, bool keep_alpha,
-            std::int64_t most_texels = std::int64_t{1} << 23);
+            std::int64_t max_texels = std::int64_t{1} << 23);
 
     /// Linear red, green and blue, row by row. Precondition: it is in memory, all of it.
     std::span<const float> rgb() const { return levels_.front().rgb; }

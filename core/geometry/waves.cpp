@@ -121,13 +121,13 @@ class WaterWaves::Shape {
     struct Bounds {
         double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
         double steepest = 0;     // of the slope
-        double most_curved = 0;  // of the second derivative in any direction [1/m]
+        double max_curved = 0;  // of the second derivative in any direction [1/m]
 
         void include(const Bounds& other) {
             lowest = std::min(lowest, other.lowest);
             highest = std::max(highest, other.highest);
             steepest = std::max(steepest, other.steepest);
-            most_curved = std::max(most_curved, other.most_curved);
+            max_curved = std::max(max_curved, other.max_curved);
         }
     };
     /// What lies before a ray [m].
@@ -239,11 +239,11 @@ class SineWaves : public WaterWaves::Shape {
     // Newton's method, with halved steps where a whole one would not help. What is to vanish is the
     // gradient of a strictly convex function, since the water does not fold: it always gets there.
     void find_calm_place(double u, double v, double& a, double& b) const {
-        constexpr int k_most_steps = 100;
+        constexpr int k_max_steps = 100;
         const double accuracy = 1e-14 * (1 + std::abs(u) + std::abs(v));
         Motion motion = motion_at(a, b);
         double off_u = a + motion.u - u, off_v = b + motion.v - v;
-        for (int i = 0; i < k_most_steps && std::hypot(off_u, off_v) > accuracy; ++i) {
+        for (int i = 0; i < k_max_steps && std::hypot(off_u, off_v) > accuracy; ++i) {
             const double determinant = motion.uu * motion.vv - motion.uv * motion.uv;
             const double step_a = (motion.vv * off_u - motion.uv * off_v) / determinant;
             const double step_b = (motion.uu * off_v - motion.uv * off_u) / determinant;
@@ -311,7 +311,7 @@ struct HeightLattice {
     /// As Shape::stretch: block by block, as long as the ray stays below all of each.
     WaterWaves::Shape::Stretch stretch(double u, double v, double z, const Vector3& direction,
                                        bool is_below) const {
-        constexpr int k_most_blocks = 256;
+        constexpr int k_max_blocks = 256;
         constexpr double k_never = std::numeric_limits<double>::infinity();
         const double blocks_per_metre = 1 / (block * step);
         // Along one axis: the block, and where the ray leaves it.
@@ -339,7 +339,7 @@ struct HeightLattice {
         Axis across(u * blocks_per_metre, direction.x * blocks_per_metre, blocks.width());
         Axis along(v * blocks_per_metre, direction.y * blocks_per_metre, blocks.height());
         double clear = 0;
-        for (int i = 0; i < k_most_blocks; ++i) {
+        for (int i = 0; i < k_max_blocks; ++i) {
             const Bounds& bounds = blocks(across.wrapped(), along.wrapped());
             const double end = std::min(across.to_next, along.to_next);
             const double highest = z + direction.z * (direction.z > 0 ? end : clear);
@@ -389,7 +389,7 @@ struct HeightLattice {
             }
         bounds.steepest = 3 / step * std::hypot(u, v);
         // The norm of a matrix is at most the root of the sum of its squares.
-        bounds.most_curved =
+        bounds.max_curved =
             std::sqrt(squared(6 * uu) + squared(6 * vv) + 2 * squared(9 * uv)) / squared(step);
         return bounds;
     }
@@ -488,12 +488,12 @@ class RandomSea : public WaterWaves::Shape {
     void set_amplitudes(const WaveSpectrumDesc& desc, const std::optional<double>& depth) {
         amplitudes_.assign(2 * last() + 1, 2 * last() + 1);
         const double wind = desc.direction * k_degree;
-        const double most_spreading = wave_spreading(0, desc.spreading);
+        const double max_spreading = wave_spreading(0, desc.spreading);
         const auto density = [&](double k_u, double k_v) {
             const double k = std::hypot(k_u, k_v);
             const double shoaling = depth ? shoaling_factor(k, *depth) : 1;
             const double cosine = std::abs(std::cos(0.5 * (std::atan2(k_v, k_u) - wind)));
-            return wave_spectrum(desc, wave_frequency(k, depth)) * shoaling * most_spreading *
+            return wave_spectrum(desc, wave_frequency(k, depth)) * shoaling * max_spreading *
                    std::pow(cosine, 2 * desc.spreading) * wave_group_velocity(k, depth) / k;
         };
         parallel_for(static_cast<std::size_t>(amplitudes_.height()), [&](std::size_t row) {
@@ -608,9 +608,9 @@ class ImageHeights : public WaterWaves::Shape {
     ImageHeights(const HeightImageDesc& desc, const SourceLocation& where) {
         const PixelImage image = read_linear_image(desc.file);
         const int width = image.width, height = image.height;
-        if (width < 2 || height < 2 || std::int64_t{width} * height > k_most_heights)
+        if (width < 2 || height < 2 || std::int64_t{width} * height > k_max_heights)
             throw InputError(fmt::format("{}: {}: {} times {} heights; give 2 times 2 to {} in all",
-                                         where, desc.file.string(), width, height, k_most_heights));
+                                         where, desc.file.string(), width, height, k_max_heights));
         step_ = desc.width / width;
         lattice_.step = step_;
         lattice_.nodes.assign(width, height);
@@ -653,7 +653,7 @@ class ImageHeights : public WaterWaves::Shape {
     }
 
   private:
-    static constexpr std::int64_t k_most_heights = std::int64_t{1} << 24;
+    static constexpr std::int64_t k_max_heights = std::int64_t{1} << 24;
 
     void difference() {
         Grid2D<HeightLattice::Node>& nodes = lattice_.nodes;
@@ -758,8 +758,8 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
         return std::nullopt;
     }
     // Surfaces that are flat touch their bounds.
-    constexpr double k_least_step = 1e-8;
-    end += k_least_step;
+    constexpr double k_min_step = 1e-8;
+    end += k_min_step;
     if (s > end) return std::nullopt;
 
     const double level = std::hypot(direction.x, direction.y);
@@ -771,13 +771,13 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
         side = -1;
         gap = {-gap.value, -gap.slope};
     }
-    double bounded = s, most_slope = 0, most_curvature = 0;  // up to there, of the gap
+    double bounded = s, max_slope = 0, max_curvature = 0;  // up to there, of the gap
     while (s <= end) {
         if (s >= bounded) {
             const Shape::Stretch ahead = shape.stretch(origin + s * direction, direction, side < 0);
-            bounded = s + ahead.end + k_least_step;
-            most_slope = std::abs(direction.z) + ahead.bounds->steepest * level;
-            most_curvature = ahead.bounds->most_curved * level * level;
+            bounded = s + ahead.end + k_min_step;
+            max_slope = std::abs(direction.z) + ahead.bounds->steepest * level;
+            max_curvature = ahead.bounds->max_curved * level * level;
             if (ahead.clear > 0) {
                 s += ahead.clear;
                 if (s > end) break;
@@ -786,13 +786,13 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
             }
         }
         // Neither its slope nor its curvature can close the gap before so far.
-        const double root = std::sqrt(gap.slope * gap.slope + 2 * most_curvature * gap.value);
+        const double root = std::sqrt(gap.slope * gap.slope + 2 * max_curvature * gap.value);
         const double by_curvature =
             gap.slope < 0 ? 2 * gap.value / (root - gap.slope)
-                          : (most_curvature > 0 ? (gap.slope + root) / most_curvature : farthest);
-        const double by_slope = most_slope > 0 ? gap.value / most_slope : farthest;
+                          : (max_curvature > 0 ? (gap.slope + root) / max_curvature : farthest);
+        const double by_slope = max_slope > 0 ? gap.value / max_slope : farthest;
         const double step =
-            std::max(k_least_step, std::min(bounded - s, std::max(by_slope, by_curvature)));
+            std::max(k_min_step, std::min(bounded - s, std::max(by_slope, by_curvature)));
         const Gap next = gap_at(s + step);
         if (next.value <= 0) {
             const double crossing = s + step * gap.value / (gap.value - next.value);

@@ -49,7 +49,7 @@ std::vector<std::array<double, 3>> tristimulus_of_bands(std::span<const double> 
 }
 
 /// The least value that srgb_encode brings to this byte or above, by bisection; 1 if there is none.
-double least_of_byte(int byte) {
+double min_of_byte(int byte) {
     double below = 0, above = 1;
     for (;;) {
         const double middle = 0.5 * (below + above);
@@ -72,9 +72,9 @@ double srgb_encode(double linear) {
 
 SrgbBytes::SrgbBytes() {
     int byte = 0;
-    double next = least_of_byte(1);
+    double next = min_of_byte(1);
     for (int i = 0; i < k_steps; ++i) {
-        while (static_cast<double>(i) / k_steps >= next) next = least_of_byte(++byte + 1);
+        while (static_cast<double>(i) / k_steps >= next) next = min_of_byte(++byte + 1);
         steps_[static_cast<std::size_t>(i)] = {next, byte};
     }
 }
@@ -150,7 +150,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> k_channels{"r", "g", "b"};
 /// Fraction of a channel's greatest response below which it is considered blind.
-constexpr double k_least_response = 1e-6;
+constexpr double k_min_response = 1e-6;
 
 // The light displayed as white, per band, with a mean of 1.
 std::vector<double> white_of(const ColourDesc& desc, std::span<const double> bands_nm) {
@@ -193,7 +193,7 @@ BandColour camera_colour(const ColourDesc& desc, std::span<const double> bands_n
             of_white[c] += white[i] * response[i][c];
         }
         const double most = *std::ranges::max_element(curve.y);
-        if (!(most > 0) || !(std::min(of_equal[c], of_white[c]) > k_least_response * most))
+        if (!(most > 0) || !(std::min(of_equal[c], of_white[c]) > k_min_response * most))
             throw InputError(fmt::format(
                 "{}: the camera's {} does not respond to water.bands, or to the white light; "
                 "check the table's wavelengths, or use another response",

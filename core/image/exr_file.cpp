@@ -46,7 +46,7 @@ namespace uw {
 namespace {
 
 // Half floats below 2^-14 are rounded by up to 2^-25, which is 1.2e-4 of this.
-constexpr double k_least_mean = 0x1p-12;
+constexpr double k_min_mean = 0x1p-12;
 // What is rounded to an infinite half float: this and more. The largest finite one is 65504.
 constexpr float k_infinite_half = 65520.0F;
 constexpr float k_infinity = std::numeric_limits<float>::infinity();
@@ -97,7 +97,7 @@ HalfLoss half_loss(const Film& film) {
         all.pixels += line.pixels;
         loss.too_large += line.too_large;
     }
-    const double least = k_least_mean * static_cast<double>(all.pixels);
+    const double least = k_min_mean * static_cast<double>(all.pixels);
     loss.too_dark = std::ranges::any_of(all.sums, [&](double s) { return s > 0 && s < least; });
     return loss;
 }
@@ -443,8 +443,8 @@ void check_exr(const Imf::Header& header, std::span<const std::string> channels,
     }
     if (!header.hasTileDescription()) return;
     const Imf::TileDescription& tiles = header.tileDescription();
-    constexpr std::int64_t k_most_texels = std::int64_t{1} << 22;
-    if (std::int64_t{tiles.xSize} * tiles.ySize > std::max(k_most_texels, 4 * width * height))
+    constexpr std::int64_t k_max_texels = std::int64_t{1} << 22;
+    if (std::int64_t{tiles.xSize} * tiles.ySize > std::max(k_max_texels, 4 * width * height))
         throw InputError(name + ": its tiles are larger than the image; the file is damaged");
 }
 

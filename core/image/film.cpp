@@ -21,10 +21,10 @@ Film::Film(int width, int height, const PixelWindow& window, std::vector<std::st
     }
     // With what rendering and writing it take besides: measured as a seventh of its own size, and
     // some tens of megabytes for lamps and surfaces of most scenes.
-    constexpr double k_with_writing = 1.2, k_least_besides = 5e7;
+    constexpr double k_with_writing = 1.2, k_min_besides = 5e7;
     const double bytes = k_with_writing * 4.0 * window.width() * window.height() *
                              static_cast<double>(channel_names_.size()) +
-                         k_least_besides;
+                         k_min_besides;
     require_memory(bytes,
                    fmt::format("camera.resolution: {} x {} pixels of {} channels need",
                                window.width(), window.height(), channel_names_.size()),

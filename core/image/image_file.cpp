@@ -23,7 +23,7 @@ namespace uw {
 namespace {
 
 // Far above what a texture of 2^28 pixels takes.
-constexpr std::size_t k_most_bytes = std::size_t{1} << 31;
+constexpr std::size_t k_max_bytes = std::size_t{1} << 31;
 
 bool starts_with(std::span<const std::byte> encoded, std::initializer_list<int> magic) {
     return encoded.size() >= magic.size() &&
@@ -35,7 +35,7 @@ bool starts_with(std::span<const std::byte> encoded, std::initializer_list<int> 
 std::vector<std::byte> read_encoded(std::ifstream in, const std::filesystem::path& file) {
     std::error_code status;
     const auto size = std::filesystem::file_size(file, status);
-    if (!status && size > k_most_bytes)
+    if (!status && size > k_max_bytes)
         throw InputError(file.string() + ": larger than 2 GB; scale the image down");
     std::vector<std::byte> encoded(status ? 0 : size);
     in.read(reinterpret_cast<char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));

@@ -134,7 +134,7 @@ PixelImage decode_other_image(DecodeImage& decode, std::span<const std::byte> en
 }
 
 std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::path& file,
-                                                       std::int64_t most_whole) {
+                                                       std::int64_t max_whole) {
     std::array<std::byte, 16> beginning{};
     std::ifstream in = open_input(file, file.string(), "image file");
     in.read(reinterpret_cast<char*>(beginning.data()), beginning.size());
@@ -149,13 +149,13 @@ std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::pa
     reinterpret_cast<OpenParts*>(module.address)(file.c_str(), format->reader, image, fault);
     if (!image) return nullptr;  // likewise
     const std::int64_t pixels = std::int64_t{image->width} * image->height;
-    if (pixels <= most_whole) return nullptr;
+    if (pixels <= max_whole) return nullptr;
     std::error_code status;
     const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, status));
-    constexpr std::int64_t k_most_pixels = std::int64_t{1} << 33;
-    constexpr std::int64_t k_most_values_per_byte = 4096;  // as in check_image_size
-    if (status || pixels > k_most_pixels ||
-        pixels * image->channels / k_most_values_per_byte > bytes)
+    constexpr std::int64_t k_max_pixels = std::int64_t{1} << 33;
+    constexpr std::int64_t k_max_values_per_byte = 4096;  // as in check_image_size
+    if (status || pixels > k_max_pixels ||
+        pixels * image->channels / k_max_values_per_byte > bytes)
         throw InputError(
             fmt::format("{}: {} x {} pixels are more than the file holds, or than the "
                         "2^33 supported; scale the image down",

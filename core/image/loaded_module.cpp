@@ -21,8 +21,8 @@ ModuleFunction load_function(const char* name, const char* symbol) {
     const bool is_library = loaded->l_name[0] != '\0';
     std::filesystem::path above =
         std::filesystem::canonical(is_library ? loaded->l_name : "/proc/self/exe", ignored);
-    constexpr int k_most_above = 5;
-    for (int i = 0; i < k_most_above && above.has_relative_path(); ++i) {
+    constexpr int k_max_above = 5;
+    for (int i = 0; i < k_max_above && above.has_relative_path(); ++i) {
         above = above.parent_path();
         const std::filesystem::path file =
             above / UWVDB_MODULE_FOLDER / (std::string(name) + ".so");

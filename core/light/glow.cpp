@@ -79,7 +79,7 @@ Spectrum Emission::of(double value) const {
 
 namespace {
 
-constexpr int k_most_cells = 1 << 21;
+constexpr int k_max_cells = 1 << 21;
 // The mean square distance of a sphere's light from its centre, in squares of the radius: that of a
 // density 1/sqrt(1 - r^2) (LampFrame).
 constexpr double k_mean_square = 0.75;
@@ -97,7 +97,7 @@ std::vector<GlowCell> cells_of(const ConcentrationField& field, const Emission& 
     if (bounds.empty()) return cells;
     const Vector3 size = bounds.max - bounds.min;
     const double edge =
-        std::max(field.finest_voxel(), std::cbrt(size.x * size.y * size.z / k_most_cells));
+        std::max(field.finest_voxel(), std::cbrt(size.x * size.y * size.z / k_max_cells));
     std::array<int, 3> count{};
     Vector3 cell;
     for (int axis = 0; axis < 3; ++axis) {

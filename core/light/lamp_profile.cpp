@@ -244,7 +244,7 @@ namespace {
 // Lumens in a file are those of the bare lamps: the luminaire may absorb much of them, but emits no
 // more.
 constexpr double k_flux_tolerance = 0.01;
-constexpr double k_least_efficiency = 0.1;
+constexpr double k_min_efficiency = 0.1;
 
 std::shared_ptr<const PhotometricWeb> read_web(const IesProfileDesc& profile,
                                                std::vector<std::string>& warnings) {
@@ -258,7 +258,7 @@ std::shared_ptr<const PhotometricWeb> read_web(const IesProfileDesc& profile,
             "{}: the candelas of {} add up to {:.4g} lm, more than the {:.4g} lm of its "
             "lamps; check its multiplier and its lumens",
             profile.where, profile.file.filename().string(), flux, file.lumens));
-    if (file.lumens > 0 && flux < k_least_efficiency * file.lumens)
+    if (file.lumens > 0 && flux < k_min_efficiency * file.lumens)
         warnings.push_back(
             fmt::format("{}: the candelas of {} add up to {:.4g} lm, {:.2g} % of the {:.4g} lm of "
                         "its lamps; check its multiplier (candelas may be per 1000 lm)",

@@ -22,13 +22,13 @@ constexpr double k_edge_on = 1e-3;
 constexpr double k_patches_aside = 3;
 
 // From psi = 1e-6, below which no integral has begun, to pi - 1e-4.
-constexpr double k_least_octave = -21, k_most_octave = 14;
+constexpr double k_min_octave = -21, k_max_octave = 14;
 constexpr int k_knots_per_octave = 32;
 constexpr auto k_knots =
-    static_cast<std::size_t>(k_most_octave - k_least_octave) * k_knots_per_octave + 1;
+    static_cast<std::size_t>(k_max_octave - k_min_octave) * k_knots_per_octave + 1;
 
 double half_tangent_at(double knot) {
-    return std::exp2(k_least_octave + knot / k_knots_per_octave);
+    return std::exp2(k_min_octave + knot / k_knots_per_octave);
 }
 
 }  // namespace
@@ -61,7 +61,7 @@ PhaseIntegrals::PhaseIntegrals(const Medium& medium)
 
 void PhaseIntegrals::add(double half_tangent, double factor, std::span<double> sums) const {
     const double octave = std::log2(std::max(half_tangent, 0x1p-21));
-    const double place = std::min((octave - k_least_octave) * k_knots_per_octave,
+    const double place = std::min((octave - k_min_octave) * k_knots_per_octave,
                                   static_cast<double>(k_knots) - 1.001);
     const auto knot = static_cast<std::size_t>(place);
     const double t = place - static_cast<double>(knot);

@@ -150,14 +150,14 @@ class DepthTolerance {
     bool allows(std::span<const double> error, double length, std::span<const double> before) const;
 
     /// An optical depth that no band falls short of.
-    double least_depth(double length, std::span<const double> columns) const;
+    double min_depth(double length, std::span<const double> columns) const;
 
     friend bool operator==(const DepthTolerance&, const DepthTolerance&) = default;
 
   private:
     double optical_depth_ = 0;
-    double least_uniform_ = 0;                            // over the bands [1/m]
-    std::vector<double> least_per_unit_, most_per_unit_;  // per constituent [1/m per unit]
+    double min_uniform_ = 0;                            // over the bands [1/m]
+    std::vector<double> min_per_unit_, max_per_unit_;  // per constituent [1/m per unit]
 };
 
 /// Concentrations along a ray for the integrators: values at ascending knots, linear in between,

@@ -18,8 +18,8 @@ namespace uw {
 
 namespace {
 
-constexpr std::size_t k_largest_file = std::size_t{4} << 20;
-constexpr std::size_t k_most_candelas = 1'100'000;  // a quarter of a degree in both angles
+constexpr std::size_t k_max_file = std::size_t{4} << 20;
+constexpr std::size_t k_max_candelas = 1'100'000;  // a quarter of a degree in both angles
 
 std::string_view trimmed(std::string_view text) {
     constexpr std::string_view k_blank = " \t\r";
@@ -213,11 +213,11 @@ IesFile parse_ies(std::string_view content, const std::string& name) {
     read_tilt(text, read_header(text, file), file);
     std::size_t polar = 0, planes = 0;
     const double factor = read_factors(text, file, polar, planes);
-    if (polar > std::min(k_most_candelas, text.bytes_left() / 2 + 1) / planes)
+    if (polar > std::min(k_max_candelas, text.bytes_left() / 2 + 1) / planes)
         text.fail(
             fmt::format("{} x {} angles need more candelas than this file can hold (at most {}); "
                         "check both counts",
-                        polar, planes, k_most_candelas));
+                        polar, planes, k_max_candelas));
     file.polar = text.ascending(polar, 180, "vertical angles");
     file.planes = text.ascending(planes, 360, "horizontal angles");
     check_ranges(text, file);
@@ -234,7 +234,7 @@ IesFile parse_ies(std::string_view content, const std::string& name) {
 
 IesFile read_ies(const std::filesystem::path& file) {
     const std::string text =
-        read_text_file(file, printable(file.string(), 300), k_largest_file, "IES file (LM-63)");
+        read_text_file(file, printable(file.string(), 300), k_max_file, "IES file (LM-63)");
     return parse_ies(text, file.filename().string());
 }
 
@@ -248,7 +248,7 @@ constexpr double k_radians = k_pi / 180;
 constexpr double k_follow = 1e-3;
 constexpr double k_dim = 1e-4;
 constexpr double k_widest = 15 * k_radians;
-constexpr std::size_t k_most_at_once = 64;
+constexpr std::size_t k_max_at_once = 64;
 
 // A position between two of a table's angles.
 struct Place {
@@ -295,7 +295,7 @@ std::vector<double> breaks_of(const std::vector<double>& angles, const std::vect
     std::size_t first = 0;
     while (first + 1 < angles.size()) {
         std::size_t last = first + 1;
-        while (last + 1 < angles.size() && last - first < k_most_at_once &&
+        while (last + 1 < angles.size() && last - first < k_max_at_once &&
                angles[last + 1] - angles[first] <= k_widest &&
                std::ranges::all_of(lines, [&](const Line& line) {
                    return follows(angles, line, first, last + 1, dim);

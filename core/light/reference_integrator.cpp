@@ -43,18 +43,18 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
     const std::shared_ptr<const Strata> strata = scene_.field->strata();
     std::vector<double> bends;  // of the strata
     if (strata) strata->append_breaks(ray, distances.back(), bends);
-    const double least_c =
+    const double min_c =
         attenuation_.uniform.least(static_cast<std::size_t>(attenuation_.band_count));
-    const double greatest_c =
+    const double max_c =
         attenuation_.uniform.greatest(static_cast<std::size_t>(attenuation_.band_count));
     for (std::size_t j = 0; j < emitters.size(); ++j) {
         const LampPassage passage(ray, emitters[j]);
-        const double reach = least_c > 0 ? passage.reach(k_extinct_optical_depth / least_c) : k_far;
+        const double reach = min_c > 0 ? passage.reach(k_extinct_optical_depth / min_c) : k_far;
         const auto scale_at = [&](double s) {
             // Ten times as far as the densest band's light reaches only the others' is left, of
             // which steps of that length in proportion are as small a part.
             if (passage.parallel)
-                return greatest_c > 0 ? std::max(1 / greatest_c, 0.1 * s) / (1 + passage.rate())
+                return max_c > 0 ? std::max(1 / max_c, 0.1 * s) / (1 + passage.rate())
                                       : k_far;
             return std::max(passage.radius(s), k_lamp_radius);
         };
@@ -139,7 +139,7 @@ namespace {
 // Initial panels of the quadrature: narrower than a phase function's forward peak where it matters,
 // and than the shadows of thin things, so that no feature is missed between the first nodes.
 constexpr std::size_t k_first_panels = 500;
-constexpr double k_least_rate = 1e-3;  // of -e^(-c s) [1/m]
+constexpr double k_min_rate = 1e-3;  // of -e^(-c s) [1/m]
 constexpr int k_deepest_halving = 18;  // 2^-18 of a first panel at a shadow's edge
 
 // Simpson's rule; `sixth` of the panel's width.
@@ -164,7 +164,7 @@ class QuadratureIntegrator::RayIntegral {
         if (lamp.sunlight()) {
             psi_ = std::acos(-glm::dot(lamp.sunlight()->direction, ray.direction));
             const auto bands = static_cast<std::size_t>(owner.attenuation_.band_count);
-            rate_ = std::max(owner.attenuation_.uniform.least(bands), k_least_rate);
+            rate_ = std::max(owner.attenuation_.uniform.least(bands), k_min_rate);
             return;
         }
         const Vector3 to_lamp = lamp.position() - ray.origin;

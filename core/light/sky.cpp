@@ -421,9 +421,9 @@ class PanoramaSky : public Sky::Distribution {
     // The least number of pixels that divides the width into no more columns than that; single ones
     // if it would leave too few.
     int square_of_pixels() const {
-        constexpr int k_most_columns = 1024, k_fewest_columns = 256;
+        constexpr int k_max_columns = 1024, k_fewest_columns = 256;
         for (int side = 1; pixels_.width() / side >= k_fewest_columns; ++side)
-            if (pixels_.width() % side == 0 && pixels_.width() / side <= k_most_columns)
+            if (pixels_.width() % side == 0 && pixels_.width() / side <= k_max_columns)
                 return side;
         return 1;
     }

@@ -22,7 +22,7 @@ constexpr double k_reach_optical_depth = 5;
 // Maximum number of survey rays along each side of the image, edges included.
 constexpr int k_survey_rays = 256;
 // Upper bound on the number of slabs including those behind `far`, whatever their thickness.
-constexpr double k_most_slabs = 1 << 20;
+constexpr double k_max_slabs = 1 << 20;
 
 // The extent of the water seen by a coarse lattice of rays, in camera z [m].
 struct View {
@@ -76,14 +76,14 @@ View survey(const RaySource& rays, const Surfaces& surfaces) {
 // Camera z beyond which no significant lamp light returns.
 double reach(const RaySource& rays, const LitScene& scene, double near) {
     const AttenuationTable attenuation(*scene.medium);
-    const double least_c =
+    const double min_c =
         attenuation.uniform.least(static_cast<std::size_t>(attenuation.band_count));
-    if (least_c <= 0) return k_far;
+    if (min_c <= 0) return k_far;
     const Point3 camera = rays.world_from_camera() * Point3{};
-    double farthest = k_reach_optical_depth / least_c;
+    double farthest = k_reach_optical_depth / min_c;
     for (const Lamp& lamp : *scene.emitters) {
         const double depth = (lamp.sunlight() ? 2 : 1) * k_reach_optical_depth;
-        farthest = std::max(farthest, distance(lamp.origin(camera), camera) + depth / least_c);
+        farthest = std::max(farthest, distance(lamp.origin(camera), camera) + depth / min_c);
     }
     return std::min(k_far, near + farthest);
 }
@@ -106,7 +106,7 @@ Slabs place_slabs(const PlanesDesc& desc, const RaySource& rays, const LitScene&
     if (!desc.far) {
         const double count = std::ceil((last - slabs.near) / slabs.thickness());
         const double thickness = slabs.thickness();
-        slabs.count = std::max(desc.count, static_cast<int>(std::min(count, k_most_slabs)));
+        slabs.count = std::max(desc.count, static_cast<int>(std::min(count, k_max_slabs)));
         if (slabs.count > desc.count) slabs.far = slabs.near + slabs.count * thickness;
     }
     return slabs;

@@ -117,7 +117,7 @@ constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6,
                                                       .interpolated_half_tangent = 0};
 // A measured profile (IES) bends where its angles were taken, anywhere on a panel.
 constexpr VolumeIntegrator::Fineness k_exact_fineness{
-    .least_relative_panel = 0.1, .pieces = 2, .interpolated_half_tangent = 1.5};
+    .min_relative_panel = 0.1, .pieces = 2, .interpolated_half_tangent = 1.5};
 constexpr double k_column_tolerance = 5e-4;
 constexpr double k_draft_column_tolerance = 0.01;
 
@@ -176,14 +176,14 @@ void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, con
 // Adds a profile's knots: every `knots`-th one, and those where particles begin and end.
 void add_knots(const ConcentrationProfile& profile, int knots, PanelBreaks& breaks) {
     const auto pace = static_cast<std::size_t>(knots);
-    const double least_knots = knots - 0.1;
+    const double min_knots = knots - 0.1;
     bool was_empty = true;
     for (std::size_t i = 0; i + 1 < profile.s.size(); ++i) {
         const bool is_empty = profile.empty_between(i);
         if (is_empty != was_empty)
             breaks.add_edge(profile.s[i]);
         else if (!is_empty && i % pace == 0)
-            breaks.add_mark(profile.s[i], least_knots * (profile.s[i + 1] - profile.s[i]));
+            breaks.add_mark(profile.s[i], min_knots * (profile.s[i + 1] - profile.s[i]));
         was_empty = is_empty;
     }
 }
@@ -255,10 +255,10 @@ VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
     const auto bands = static_cast<std::size_t>(c.band_count);
     for (std::size_t j = 0; j < scene.emitters->size(); ++j)
         if ((*scene.emitters)[j].is_focused() ? part.focused : part.even) emitters_.push_back(j);
-    largest_attenuation_ = c.uniform.greatest(bands);
-    smallest_attenuation_ = c.uniform.least(bands);
+    max_attenuation_ = c.uniform.greatest(bands);
+    min_attenuation_ = c.uniform.least(bands);
     for (const Spectrum& constituent : c.constituents)
-        largest_per_unit_.push_back(constituent.greatest(bands));
+        max_per_unit_.push_back(constituent.greatest(bands));
 }
 
 void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
@@ -327,8 +327,8 @@ void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double be
     const Lamp& lamp = (*scene_.emitters)[emitter];
     const LampPassage passage(ray, lamp);
     double reach = distances.back();
-    if (smallest_attenuation_ > 0)
-        reach = std::min(reach, passage.reach(k_negligible_optical_depth / smallest_attenuation_));
+    if (min_attenuation_ > 0)
+        reach = std::min(reach, passage.reach(k_negligible_optical_depth / min_attenuation_));
     deep_shadows_[emitter]->lit_intervals(ray, lamp.beam(ray, {begin, reach}), w.lit);
     w.nodes.clear();
     for (const Interval& interval : w.lit) {
@@ -378,12 +378,12 @@ const std::vector<double>& VolumeIntegrator::find_breaks(const Ray& ray, std::si
     w.marks.clear();
     append_octaves(passage, interval, w.marks);
     for (const double s : w.marks)
-        w.breaks.add_mark(s, fineness_.least_relative_panel * passage.radius(s));
+        w.breaks.add_mark(s, fineness_.min_relative_panel * passage.radius(s));
     // Parallel light is divided by octaves of the distance from the interval's brighter end: the
     // light of the densest bands ends in the first, and that of ever fewer others in each of the
     // next.
     if (passage.parallel)
-        for (double u = k_negligible_optical_depth / (largest_attenuation_ * passage.rate());
+        for (double u = k_negligible_optical_depth / (max_attenuation_ * passage.rate());
              u < interval.length(); u *= 2)
             w.breaks.add_edge(brightens(passage) ? interval.end - u : interval.begin + u);
     for (const double cotangent :
@@ -423,15 +423,15 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         if (relative == 0) continue;
         while (next + 1 < distances.size() && distances[next] < middle) ++next;
         while (knot + 2 < profile.s.size() && profile.s[knot + 1] < middle) ++knot;
-        double attenuation = largest_attenuation_;
+        double attenuation = max_attenuation_;
         if (passage.parallel) {  // of bands whose light gets there from the brighter end
             const double u =
                 brightens(passage) ? breaks.back() - panel.end : panel.begin - breaks.front();
             attenuation = std::min(attenuation, k_negligible_optical_depth / (passage.rate() * u));
         }
-        for (std::size_t k = 0; k < largest_per_unit_.size(); ++k)
+        for (std::size_t k = 0; k < max_per_unit_.size(); ++k)
             attenuation +=
-                largest_per_unit_[k] * profile.concentration[knot * largest_per_unit_.size() + k];
+                max_per_unit_[k] * profile.concentration[knot * max_per_unit_.size() + k];
         // The optical depth along the light's path, s + R.
         const double depth = passage.rate() * attenuation * panel.length();
         const int pieces =

@@ -78,7 +78,7 @@ class VolumeIntegrator final : public Integrator {
         int knots_per_panel = 2;
         // A break that only marks a change of scale is dropped if its predecessor is closer than
         // this, relative to the distance from the lamp.
-        double least_relative_panel = 0.35;
+        double min_relative_panel = 0.35;
         int pieces = 1;  // that every panel is cut into at least
         // Where tan(psi / 2) is greater, columns to the lamp are interpolated between the rays of
         // its map; up to there each is integrated.
@@ -139,9 +139,9 @@ class VolumeIntegrator final : public Integrator {
     std::vector<double> phase_cotangents_;  // of all phase functions' breakpoints
     PhaseTable phases_;
     ScatterSum sum_;
-    double largest_attenuation_ = 0;  // of the uniform water over the bands [1/m]
-    double smallest_attenuation_ = 0;
-    std::vector<double> largest_per_unit_;  // over the bands, per constituent [1/m per unit]
+    double max_attenuation_ = 0;  // of the uniform water over the bands [1/m]
+    double min_attenuation_ = 0;
+    std::vector<double> max_per_unit_;  // over the bands, per constituent [1/m per unit]
 };
 
 }  // namespace uw

@@ -23,7 +23,7 @@ namespace {
 // numbers to be kept for the whole image than these.
 constexpr int k_enough_spacing = 4;
 constexpr double k_enough_rays = 8000;
-constexpr double k_most_numbers = 1e7;
+constexpr double k_max_numbers = 1e7;
 constexpr double k_middle = 0.5;  // of pixels, where their rays in the water are
 
 }  // namespace
@@ -36,7 +36,7 @@ WeightLattice::WeightLattice(const RaySource& rays, const IntervalWeights& weigh
     const double numbers = pixels * static_cast<double>(uniform_.size());
     spacing_ = std::max(
         std::clamp(static_cast<int>(std::sqrt(pixels / k_enough_rays)), 1, k_enough_spacing),
-        static_cast<int>(std::ceil(std::sqrt(numbers / k_most_numbers))));
+        static_cast<int>(std::ceil(std::sqrt(numbers / k_max_numbers))));
     column_ = window.x0 / spacing_;
     row_ = window.y0 / spacing_;
     const auto steps = [&](int first, int end) {
@@ -139,10 +139,10 @@ struct MultipleLightOptions {
 
 namespace {
 
-// Nodes see the same surface as a pixel if its normal agrees with theirs (k_least_node_cosine) and
+// Nodes see the same surface as a pixel if its normal agrees with theirs (k_min_node_cosine) and
 // it lies no farther from their tangent plane than this, relative to its distance.
-constexpr double k_most_slope = 0.35;
-constexpr double k_least_cosine_of_match = 0.7;  // of normals, where no node agrees better
+constexpr double k_max_slope = 0.35;
+constexpr double k_min_cosine_of_match = 0.7;  // of normals, where no node agrees better
 constexpr int k_search = 3;            // cells around a pixel without a match at its corners
 constexpr int k_paths_of_sample = 32;  // where there is none at all
 constexpr int k_mirrored_paths = 8;    // of a pixel whose surfaces are glossy
@@ -184,7 +184,7 @@ class MultipleLight {
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
                       std::vector<Corner>& matches) const;
-    void find_matches(double x, double y, const SurfaceHit& hit, double least_cosine,
+    void find_matches(double x, double y, const SurfaceHit& hit, double min_cosine,
                       std::vector<Corner>& matches) const;
     struct Errors;
 
@@ -417,20 +417,20 @@ void MultipleLight::add_volume(const PixelView& view, PixelResult& result, Error
 // differ more will do where none agrees better: on rough ground nodes cannot have them all.
 void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit,
                                  std::vector<Corner>& matches) const {
-    for (const double least_cosine : {k_least_node_cosine, k_least_cosine_of_match}) {
-        find_matches(x, y, hit, least_cosine, matches);
+    for (const double min_cosine : {k_min_node_cosine, k_min_cosine_of_match}) {
+        find_matches(x, y, hit, min_cosine, matches);
         if (!matches.empty()) return;
     }
 }
 
-void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit, double least_cosine,
+void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit, double min_cosine,
                                  std::vector<Corner>& matches) const {
     const auto sees = [&](const SmoothNode& node) {
         if (!node.surface || node.surface->object_id != hit.object_id) return false;
         const NodeSurface& surface = *node.surface;
-        if (glm::dot(surface.normal, hit.normal) < least_cosine) return false;
+        if (glm::dot(surface.normal, hit.normal) < min_cosine) return false;
         const Vector3 between = hit.position - surface.position;
-        return std::abs(glm::dot(between, surface.normal)) <= k_most_slope * glm::length(between);
+        return std::abs(glm::dot(between, surface.normal)) <= k_max_slope * glm::length(between);
     };
     find_corners(x, y, matches);
     std::erase_if(matches,

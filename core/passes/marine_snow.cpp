@@ -16,12 +16,12 @@ namespace uw {
 namespace {
 
 // Below this relative difference expm1(x)/x is 1.
-constexpr double k_smallest_power = 1e-12;
+constexpr double k_min_power = 1e-12;
 
 /// int_a^b D^power dD, without cancellation where the power is nearly -1.
 double integral_of_power(double power, double a, double b) {
     const double x = (power + 1) * std::log(b / a);
-    const double ratio = std::abs(x) < k_smallest_power ? 1 : std::expm1(x) / x;
+    const double ratio = std::abs(x) < k_min_power ? 1 : std::expm1(x) / x;
     return std::pow(a, power + 1) * std::log(b / a) * ratio;
 }
 
@@ -36,7 +36,7 @@ double JungeSizes::share(double a, double b) const {
 
 double JungeSizes::quantile(double u, double a, double b) const {
     const double power = 1 - exponent_, x = power * std::log(b / a);
-    if (std::abs(x) < k_smallest_power) return a * std::pow(b / a, u);
+    if (std::abs(x) < k_min_power) return a * std::pow(b / a, u);
     return a * std::exp(std::log1p(u * std::expm1(x)) / power);
 }
 
@@ -52,7 +52,7 @@ constexpr std::uint64_t k_stream = 0x736e6f77;  // other numbers than for light 
 // to fill a view closely.
 constexpr double k_per_cell = 16;
 // The last octave is never much narrower than the others.
-constexpr double k_least_ratio = 1.01;
+constexpr double k_min_ratio = 1.01;
 
 }  // namespace
 
@@ -60,7 +60,7 @@ SnowField::SnowField(const SnowDesc& desc)
     : sizes_(desc.exponent, desc.least, desc.greatest), drift_(desc.drift), seed_(desc.seed) {
     for (double least = desc.least; least < desc.greatest;) {
         double greatest = 2 * least;
-        if (greatest * k_least_ratio > desc.greatest) greatest = desc.greatest;
+        if (greatest * k_min_ratio > desc.greatest) greatest = desc.greatest;
         const double number = desc.number * sizes_.share(least, greatest);
         classes_.push_back({.least = least,
                             .greatest = greatest,

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double k_pi = std::numbers::pi;
 constexpr double k_negligible = 1e-15;
-const double k_largest_exponent = -std::log(k_negligible);
+const double k_max_exponent = -std::log(k_negligible);
 
 // Beyond this sigma a Gaussian's spectrum at half a cycle per pixel is below 3e-9: no aliases.
 constexpr double k_alias_free_sigma = 2;
@@ -33,7 +33,7 @@ constexpr double k_alias_free_sigma = 2;
 constexpr double k_alias_free_exponent = 18;
 // In the mixture of Gaussians that makes up the exponential (below), a fraction of 2e-9 is narrower
 // than s / 6.
-constexpr double k_largest_deviate = 6;
+constexpr double k_max_deviate = 6;
 
 // The table of aliases: nodes over 0 to half a cycle per pixel, and one beyond either end.
 constexpr int k_steps = 64;
@@ -117,7 +117,7 @@ BlurKernel::BlurKernel(ForwardScatterDesc::Shape shape, BlurWidth blur, int widt
             --column_count_;
     } else {
         tabulate_aliases();
-        const double last = k_largest_exponent * width / (k_pi * blur.x);
+        const double last = k_max_exponent * width / (k_pi * blur.x);
         if (aliases_.empty() && last < columns) column_count_ = static_cast<int>(last) + 1;
     }
 }
@@ -138,8 +138,8 @@ void BlurKernel::tabulate_aliases() {
     if (2 * column_count_ <= width_ && 2 * row_count_ <= height_ &&
         1.5 * k_pi * narrow > k_alias_free_exponent)
         return;
-    const double least_deviate = narrow / k_alias_free_sigma;
-    if (least_deviate >= k_largest_deviate) return;
+    const double min_deviate = narrow / k_alias_free_sigma;
+    if (min_deviate >= k_max_deviate) return;
     aliases_.assign(static_cast<std::size_t>(k_nodes) * k_nodes, 0.0);
     const auto add = [&](double sigma_x, double sigma_y, double weight) {
         const PixelGaussian x(sigma_x), y(sigma_y);
@@ -156,13 +156,13 @@ void BlurKernel::tabulate_aliases() {
                 aliases_[i * k_nodes + j] += lines[0][i] * lines[1][j] - lines[2][i] * lines[3][j];
     };
     // Below this width no light leaves the pixel, and the mixture would be endless.
-    constexpr double k_least_deviate = 1e-7;
+    constexpr double k_min_deviate = 1e-7;
     constexpr double k_log_step = 0.1;
     table_rows_.reserve(static_cast<std::size_t>(row_count_));
     for (int row = 0; row < row_count_; ++row)
         table_rows_.push_back(table_position(0.5 * row / height_));
-    const double begin = std::log(std::max(least_deviate, k_least_deviate));
-    const int count = static_cast<int>((std::log(k_largest_deviate) - begin) / k_log_step) + 1;
+    const double begin = std::log(std::max(min_deviate, k_min_deviate));
+    const int count = static_cast<int>((std::log(k_max_deviate) - begin) / k_log_step) + 1;
     for (int q = 0; q <= count; ++q) {
         const double z = std::exp(begin + q * k_log_step);
         const double density = std::sqrt(2 / k_pi) * std::exp(-0.5 * z * z);
@@ -184,7 +184,7 @@ int BlurKernel::fill_exponential(double across, std::span<double> spectrum) cons
     for (int row = 0; row < row_count_; ++row) {
         const double y = step * row;
         const double exponent = std::sqrt(x * x + y * y);
-        if (aliases_.empty() && exponent > k_largest_exponent) return row;
+        if (aliases_.empty() && exponent > k_max_exponent) return row;
         const auto at = static_cast<std::size_t>(row);
         double value = std::exp(-exponent) * factor * down_[at];
         if (!aliases_.empty()) {

@@ -394,7 +394,7 @@ constexpr double k_margin = 1.05;
 constexpr int k_guess = 64;
 
 // Rounds are at least this fraction of the paths before them.
-constexpr double k_least_growth = 0.125;
+constexpr double k_min_growth = 0.125;
 
 constexpr int k_batches = PathRound::k_batches;
 
@@ -459,7 +459,7 @@ class Spread {
     /// than it is.
     Grid2D<float> worths() const {
         constexpr int k_reach = 3;
-        constexpr double k_least_worth = 0.25, k_most_worth = 8;
+        constexpr double k_min_worth = 0.25, k_max_worth = 8;
         Grid2D<float> worths;
         worths.assign(window_.width(), window_.height());
         const auto deviation = [&](int x, int y) {
@@ -488,7 +488,7 @@ class Spread {
                 }
                 const double worth = count > 0 && mean > 0 ? sum / count / mean : 1;
                 worths(x - window_.x0, y - window_.y0) =
-                    static_cast<float>(std::clamp(worth, k_least_worth, k_most_worth));
+                    static_cast<float>(std::clamp(worth, k_min_worth, k_max_worth));
             }
         });
         return worths;
@@ -562,12 +562,12 @@ class RoundProgress {
 int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far) {
     if (!goal.error) return so_far.samples == 0 ? goal.samples : 0;
     if (so_far.samples == 0) return k_batches;
-    const int possible = k_most_paths - so_far.samples;
+    const int possible = k_max_paths - so_far.samples;
     if (possible <= 0 || so_far.error.value_or(0.0) <= *goal.error) return 0;
     // Batches of 2^k paths cover their dimensions best. The next round may correct a round too few.
     const double missing = samples_needed(*goal.error, so_far) - so_far.samples;
     const double most = std::min({missing, 2.0 * so_far.samples, static_cast<double>(possible)});
-    const double wanted = std::max(most, k_least_growth * so_far.samples);
+    const double wanted = std::max(most, k_min_growth * so_far.samples);
     int samples = k_batches;
     while (2 * samples <= wanted) samples *= 2;
     return std::min(samples, possible);
@@ -609,7 +609,7 @@ void PathPass::run(Rendering& rendering) {
         double in_all = samples;
         if (goal.error)
             in_all = std::clamp(round.number == 0 ? k_guess : samples_needed(*goal.error, accuracy),
-                                in_all, static_cast<double>(k_most_paths));
+                                in_all, static_cast<double>(k_max_paths));
         so_far.begin_round(in_all);
         parallel_for(tasks, [&](std::size_t task) {
             thread_local PixelResult result;

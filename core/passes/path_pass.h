@@ -85,7 +85,7 @@ struct PathRequest {
     /// the image's quality does.
     double share = 1;
     // Of images that are rendered by light paths (IntegratorKind::traces_paths):
-    /// The greatest PathAccuracy::error, instead of the scene's samples. No more than k_most_paths
+    /// The greatest PathAccuracy::error, instead of the scene's samples. No more than k_max_paths
     /// are traced for it.
     std::optional<double> error{};
     int orders = 0;  // LayerSupply::orders

@@ -17,18 +17,18 @@ namespace {
 // covers: nothing else of an edge is seen.
 constexpr double k_small = 0.7, k_sharp = 0.25;
 // The least radius of an ellipse, and half width of a box, which are those of a point.
-constexpr double k_least_radius = 1e-3, k_least_half = 1e-6;
+constexpr double k_min_radius = 1e-3, k_min_half = 1e-6;
 // The steps of a path [pixels, or of the radius]: their spread, step^2 / 12, is less than 3 % of
 // that of a disk.
 constexpr double k_step = 0.5, k_step_of_radius = 0.25;
-constexpr double k_most_steps = 4096;
+constexpr double k_max_steps = 4096;
 // Wider edges [pixels, half] need no samples within pixels.
 constexpr double k_soft = 1.5;
 // Larger footprints hold so many samples that the shares add up to their area by themselves, to
 // 1 %: the edge of a disk of radius r, sampled n times per pixel, is off by less than 1/(n r)^1.5.
 constexpr double k_large = 16;
 // So do those, long and thin, that are looked for in more pixels than this.
-constexpr double k_most_pixels = 1 << 20;
+constexpr double k_max_pixels = 1 << 20;
 
 /// The standard deviations along x and y of the unit disk's image.
 std::array<double, 2> deviations(const PlaneMap& disk, const PlaneMap& blur) {
@@ -50,8 +50,8 @@ PlaneMap unit_from_ellipse(const PlaneMap& disk, const PlaneMap& blur) {
     const double yy = disk.yx * disk.yx + disk.yy * disk.yy + blur.yx * blur.yx + blur.yy * blur.yy;
     const double xy = disk.xx * disk.yx + disk.xy * disk.yy + blur.xx * blur.yx + blur.xy * blur.yy;
     // A root of that matrix (Cholesky's).
-    const double x = std::max(k_least_radius, std::sqrt(xx)), skew = xy / x;
-    const double y = std::max(k_least_radius, std::sqrt(std::max(0.0, yy - skew * skew)));
+    const double x = std::max(k_min_radius, std::sqrt(xx)), skew = xy / x;
+    const double y = std::max(k_min_radius, std::sqrt(std::max(0.0, yy - skew * skew)));
     return PlaneMap{x, skew, 0, y}.inverse();
 }
 
@@ -162,12 +162,12 @@ Footprint::Footprint(const Path& path, const PlaneMap& disk, const PlaneMap& blu
     const double length = std::hypot(path.linear[0], path.linear[1]) +
                           std::hypot(path.quadratic[0], path.quadratic[1]);
     const double step = std::max(k_step, k_step_of_radius * radius);
-    steps_ = static_cast<int>(std::clamp(std::ceil(2 * length / step), 1.0, k_most_steps));
+    steps_ = static_cast<int>(std::clamp(std::ceil(2 * length / step), 1.0, k_max_steps));
     const double softness = std::min(disk_radius, blur_radius);
     is_sharp_ = softness < k_sharp || is_small_;
     if (is_small_ && steps_ > 1) {
         half_ = deviations(disk, blur);
-        for (double& half : half_) half = std::max(k_least_half, std::sqrt(3.0) * half);
+        for (double& half : half_) half = std::max(k_min_half, std::sqrt(3.0) * half);
     } else if (is_sharp_) {
         unit_from_plane_ = unit_from_ellipse(disk, blur);
         const PlaneMap ellipse = unit_from_plane_.inverse();
@@ -191,7 +191,7 @@ Footprint::Footprint(const Path& path, const PlaneMap& disk, const PlaneMap& blu
         bounds_ = {std::min(bounds_.x0, more.x0), std::min(bounds_.y0, more.y0),
                    std::max(bounds_.x1, more.x1), std::max(bounds_.y1, more.y1)};
     }
-    is_scaled_ = radius >= k_large || 4 * half_[0] * half_[1] > k_most_pixels;
+    is_scaled_ = radius >= k_large || 4 * half_[0] * half_[1] > k_max_pixels;
 }
 
 std::array<double, 2> Footprint::position(double t) const {

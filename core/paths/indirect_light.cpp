@@ -13,17 +13,17 @@ namespace uw {
 namespace {
 
 // Points that take part, and those that are looked through for some that face the same way.
-constexpr std::size_t k_near = 8, k_most_near = 64;
+constexpr std::size_t k_near = 8, k_max_near = 64;
 // Points tell of a place if the normals agree, and if it lies no farther from their tangent planes
 // than this, relative to its distance.
-constexpr double k_least_cosine = 0.5, k_most_slope = 0.35;
+constexpr double k_min_cosine = 0.5, k_max_slope = 0.35;
 
 }  // namespace
 
 /// The nearest points, by ascending distance.
 struct IndirectLight::Near {
-    std::array<std::size_t, k_most_near> index;
-    std::array<double, k_most_near> square;  // of the distance [m^2]
+    std::array<std::size_t, k_max_near> index;
+    std::array<double, k_max_near> square;  // of the distance [m^2]
     std::size_t count = 0;
 };
 
@@ -71,10 +71,10 @@ namespace {
 // How well a point at this squared distance tells of the hit but for its distance: 0..1.
 double agreement(const SurfacePoint& point, const SurfaceHit& hit, double square) {
     const double cosine = glm::dot(point.normal, hit.normal);
-    if (!(cosine > k_least_cosine)) return 0;
+    if (!(cosine > k_min_cosine)) return 0;
     const double off = glm::dot(hit.position - point.position, point.normal);
-    if (off * off > k_most_slope * k_most_slope * square + 1e-12) return 0;
-    const double agreeing = (cosine - k_least_cosine) / (1 - k_least_cosine);
+    if (off * off > k_max_slope * k_max_slope * square + 1e-12) return 0;
+    const double agreeing = (cosine - k_min_cosine) / (1 - k_min_cosine);
     return agreeing * agreeing;
 }
 
@@ -97,9 +97,9 @@ void IndirectLight::find(const SurfaceHit& hit, std::span<double> radiance) cons
     Near near;
     tree_->find(hit.position, k_near, near);
     if (near.count == 0) return;
-    std::array<double, k_most_near> shares;
+    std::array<double, k_max_near> shares;
     if (!find_shares(hit, near, shares)) {
-        tree_->find(hit.position, k_most_near, near);
+        tree_->find(hit.position, k_max_near, near);
         if (!find_shares(hit, near, shares)) {
             // The nearest that faces the same half of space.
             const auto faces = [&](std::size_t index) {
@@ -126,7 +126,7 @@ bool IndirectLight::find_shares(const SurfaceHit& hit, const Near& near,
     // Keeps the plane level where the points say little of its slope.
     constexpr double k_ridge = 0.005;
     const double farthest = std::sqrt(std::max(near.square[near.count - 1], 1e-24));
-    std::array<double, k_most_near> weights{}, x{}, y{};
+    std::array<double, k_max_near> weights{}, x{}, y{};
     const auto [u, v] = Tangents(hit.normal);
     double s0 = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
     for (std::size_t i = 0; i < near.count; ++i) {
@@ -161,7 +161,7 @@ bool IndirectLight::find_shares(const SurfaceHit& hit, const Near& near,
 
 bool IndirectLight::covers(const SurfaceHit& hit, double radius) const {
     Near near;
-    tree_->find(hit.position, k_most_near, near);
+    tree_->find(hit.position, k_max_near, near);
     for (std::size_t i = 0; i < near.count && near.square[i] <= radius * radius; ++i)
         if (agreement(tree_->point(near.index[i]), hit, near.square[i]) > 0) return true;
     return false;

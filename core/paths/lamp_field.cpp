@@ -56,8 +56,8 @@ constexpr OctaveNodes k_coarse_radii(0x1p-8, 48, 2), k_coarse_angles(0x1p-10, 0x
 constexpr std::size_t k_lobe_stride = 2;
 
 constexpr std::size_t k_albedos = 3;
-constexpr double k_least_albedo = 0.1, k_most_albedo = 0.99;
-constexpr double k_least_value = 1e-30;
+constexpr double k_min_albedo = 0.1, k_max_albedo = 0.99;
+constexpr double k_min_value = 1e-30;
 
 double sine_of(double h) {
     return 2 * h / (1 + h * h);
@@ -151,7 +151,7 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
     // Polar angles are the closer together the less is scattered beyond them: what comes from
     // behind has been scattered far from the bright light around the lamp.
     constexpr int k_polar = 96, k_azimuths = 16;
-    constexpr double k_least_sine = 0.3 / k_azimuths;  // relative: half a step beside the lamp
+    constexpr double k_min_sine = 0.3 / k_azimuths;  // relative: half a step beside the lamp
     matrix_.resize(nh_ * nh_);
     parallel_for(nh_, [&](std::size_t i) {
         std::vector<double> row(nh_, 0.0);
@@ -171,7 +171,7 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
                 const double h = std::clamp(along > -1 ? across / (1 + along) : angles_.back(),
                                             angles_.front(), angles_.back());
                 const double sine =
-                    std::max({across, k_least_sine * std::sin(theta), sine_of(angles_.front())});
+                    std::max({across, k_min_sine * std::sin(theta), sine_of(angles_.front())});
                 const OctaveNodes::At at = angles_.at(h);
                 const std::size_t m =
                     std::clamp(at.index + (at.t > 0.5 ? 1 : 0), std::size_t{1}, nh_ - 2);
@@ -206,7 +206,7 @@ double LampField::Solver::first_order(const HalfTangentDensity& line, double rad
 // Between the nodes of the radius the source is linear once it is freed of most of its decay.
 void LampField::Solver::march(double radius, double h, std::vector<Step>& steps) const {
     constexpr double k_reach = 20;
-    const double least_step = is_coarse_ ? 0.004 : 0.002, most_step = is_coarse_ ? 0.8 : 0.4;
+    const double min_step = is_coarse_ ? 0.004 : 0.002, max_step = is_coarse_ ? 0.8 : 0.4;
     const double growth = is_coarse_ ? 0.6 : 0.3;
     const auto to_lamp_at = [](double across, double along) {
         return std::sqrt(across * across + along * along);
@@ -214,8 +214,8 @@ void LampField::Solver::march(double radius, double h, std::vector<Step>& steps)
     const double distance = radius * sine_of(h), foot = radius * std::cos(2 * std::atan(h));
     double s = 0, transmittance = 1;
     while (s < k_reach) {
-        double step = std::clamp(growth * to_lamp_at(distance, s - foot), least_step, most_step);
-        if (s < foot && s + step > foot) step = std::max(foot - s, least_step);
+        double step = std::clamp(growth * to_lamp_at(distance, s - foot), min_step, max_step);
+        if (s < foot && s + step > foot) step = std::max(foot - s, min_step);
         const double middle = s + 0.5 * step;
         const double to_lamp = to_lamp_at(distance, middle - foot);
         const double lost = -std::expm1(-step);
@@ -261,19 +261,19 @@ void LampField::Solver::find_next_order() {
 }
 
 LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-                     double least_albedo, double greatest_albedo, const Fineness& fineness)
+                     double min_albedo, double max_albedo, const Fineness& fineness)
     : phase_(direction), line_(line), line_in_table_(line.mass() - line.mass_to(k_angles.front())) {
     // An order that adds less than this is the last; what lies near the end of the table counts for
     // nothing in that.
     constexpr double k_enough = 1e-2, k_counting = 0.5;
     const std::size_t nr = k_radii.count(), nh = k_angles.count();
-    least_albedo_ = std::clamp(least_albedo, k_least_albedo, k_most_albedo - 1e-3);
+    min_albedo_ = std::clamp(min_albedo, k_min_albedo, k_max_albedo - 1e-3);
     albedo_step_ =
-        (std::clamp(greatest_albedo, least_albedo_ + 1e-3, k_most_albedo) - least_albedo_) /
+        (std::clamp(max_albedo, min_albedo_ + 1e-3, k_max_albedo) - min_albedo_) /
         (k_albedos - 1);
     std::array<double, k_albedos> albedo{}, power{};
     for (std::size_t k = 0; k < k_albedos; ++k)
-        power[k] = albedo[k] = least_albedo_ + albedo_step_ * static_cast<double>(k);
+        power[k] = albedo[k] = min_albedo_ + albedo_step_ * static_cast<double>(k);
     Solver solver(direction, line, fineness.is_coarse);
     std::vector<double> once = solver.order();
     std::vector<std::vector<double>> all(k_albedos), sources(k_albedos);
@@ -292,7 +292,7 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
                 const double value = power[k] * solver.order()[q];
                 all[k][q] += value;
                 if (solver.radius_of(q) < k_counting * k_radii.back())
-                    most = std::max(most, value / std::max(all[k][q], k_least_value));
+                    most = std::max(most, value / std::max(all[k][q], k_min_value));
             }
         }
         if (most < k_enough) break;
@@ -301,15 +301,15 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
     for (std::vector<std::vector<double>>* const fields : {&all, &sources})
         for (std::vector<double>& values : *fields) values = solver.at_nodes_of_field(values);
     const auto log_of = [](double value) {
-        return static_cast<float>(std::log(std::max(value, k_least_value)));
+        return static_cast<float>(std::log(std::max(value, k_min_value)));
     };
     for (std::size_t k = 0; k < k_albedos; ++k) {
         for (std::size_t q = 0; q < once.size(); ++q) {
-            constexpr double k_least_multiple = 1e-3;  // share of all
+            constexpr double k_min_multiple = 1e-3;  // share of all
             const double value = all[k][q];
             all_.push_back(log_of(value));
             more_.push_back(
-                log_of(std::max(value - albedo[k] * once[q], k_least_multiple * value)));
+                log_of(std::max(value - albedo[k] * once[q], k_min_multiple * value)));
             source_.push_back(log_of(sources[k][q]));
         }
         for (std::size_t i = 0; i < nr; ++i) {
@@ -345,7 +345,7 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
 LampField::Place LampField::at(double radius, double albedo) const {
     const std::size_t nr = k_radii.count(), nh = k_angles.count();
     const OctaveNodes::At r = k_radii.at(radius);
-    const double x = std::clamp((albedo - least_albedo_) / albedo_step_, 0.0, k_albedos - 1.0);
+    const double x = std::clamp((albedo - min_albedo_) / albedo_step_, 0.0, k_albedos - 1.0);
     const std::size_t k = std::min(static_cast<std::size_t>(x), k_albedos - 2);
     const double u = x - static_cast<double>(k);
     Place place;

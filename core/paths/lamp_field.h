@@ -27,7 +27,7 @@ class LampField {
     LampField() = default;
     /// `direction`, `line`: ScatteringTables::directions and lines of the phase function.
     LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-              double least_albedo, double greatest_albedo, const Fineness& fineness);
+              double min_albedo, double max_albedo, const Fineness& fineness);
 
     /// Where to look up, for one distance and albedo.
     struct Place {
@@ -73,7 +73,7 @@ class LampField {
 
     HalfTangentDensity phase_, line_;
     double line_in_table_ = 1;  // of `line_`, beyond the tables' first angle
-    double least_albedo_ = 0, albedo_step_ = 1;
+    double min_albedo_ = 0, albedo_step_ = 1;
     std::vector<float> decay_;                // of the logarithms beyond the table, by albedo
     std::vector<float> all_, more_, source_;  // logarithms, [(albedo, radius, h)]
     std::vector<float> flux_;                 // logarithms, [(albedo, radius)]

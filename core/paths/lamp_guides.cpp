@@ -12,15 +12,15 @@ namespace {
 
 // A lamp that shines elsewhere still fills the water around it with scattered light. Guides that
 // fall to nothing where there is some make paths whose light is far too bright.
-constexpr double k_guide_least_relative = 0.3, k_guide_least_cosine = 0.1;
-constexpr double k_guide_least_reflectance = 0.1;
-constexpr double k_guide_least_radius = 0.002;  // m: keeps the field finite at a lamp
-constexpr double k_guide_least_depth = 1e-6;
+constexpr double k_guide_min_relative = 0.3, k_guide_min_cosine = 0.1;
+constexpr double k_guide_min_reflectance = 0.1;
+constexpr double k_guide_min_radius = 0.002;  // m: keeps the field finite at a lamp
+constexpr double k_guide_min_depth = 1e-6;
 // A few of the bands, evenly spread, stand for all.
-constexpr std::size_t k_most_bands = 4;
+constexpr std::size_t k_max_bands = 4;
 
 std::size_t band_stride(std::size_t bands) {
-    return (bands + k_most_bands - 1) / k_most_bands;
+    return (bands + k_max_bands - 1) / k_max_bands;
 }
 
 double sum_of_guiding_bands(const Spectrum& weights, std::size_t bands) {
@@ -46,11 +46,11 @@ struct Depth {
 };
 
 double guided_intensity(const Lamp& lamp, const Vector3& from_lamp) {
-    return std::max(k_guide_least_relative, lamp.relative_intensity(from_lamp));
+    return std::max(k_guide_min_relative, lamp.relative_intensity(from_lamp));
 }
 
 double guided_spread(const Lamp& lamp, double distance) {
-    return lamp.spread(std::max(distance, k_guide_least_radius));
+    return lamp.spread(std::max(distance, k_guide_min_radius));
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ void LampGuides::find(const GuideTables& tables, const Point3& x, const Spectrum
         guide.direction = to_lamp / length;
         guide.radius = length;
         guide.albedo = albedo / sum;
-        const double depth = std::max(tau / sum, k_guide_least_depth);
+        const double depth = std::max(tau / sum, k_guide_min_depth);
         guide.attenuation = depth / length;
         guide.place = field.at(depth, guide.albedo);
         guide.intensity = sum / field.flux(guide.place);
@@ -146,7 +146,7 @@ double LampGuides::source(const Point3& y, const Vector3& direction) const {
         const Vector3 to_lamp = lamp.origin(y) - y;
         const double length = std::max(glm::length(to_lamp), 1e-9);
         const LampField::Place place =
-            field.at(std::max(length * guide.attenuation, k_guide_least_depth), guide.albedo);
+            field.at(std::max(length * guide.attenuation, k_guide_min_depth), guide.albedo);
         light += guide.intensity * guided_intensity(lamp, -to_lamp) * place.radius * place.radius /
                  guided_spread(lamp, length) *
                  field.source(place, half_tangent_between(to_lamp / length, direction));
@@ -167,16 +167,16 @@ double guessed_reflection(const GuideTables& tables, const SurfaceHit& hit,
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         const Vector3 to_lamp = lamps[j].origin(hit.position) - hit.position;
-        const double length = std::max(glm::length(to_lamp), k_guide_least_radius);
+        const double length = std::max(glm::length(to_lamp), k_guide_min_radius);
         tables.lamps.column_to_lamp(j, hit.position, column);
         const double geometry =
             guided_intensity(lamps[j], -to_lamp) *
-            std::max(k_guide_least_cosine, glm::dot(hit.normal, to_lamp) / length) /
+            std::max(k_guide_min_cosine, glm::dot(hit.normal, to_lamp) / length) /
             lamps[j].spread(length) * std::numbers::inv_pi;
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             const Depth depth(tables, b, length, column);
             light += weights[b] / all * geometry * lamps[j].axis_intensity()[b] *
-                     std::max(k_guide_least_reflectance, hit.reflectance[b]) *
+                     std::max(k_guide_min_reflectance, hit.reflectance[b]) *
                      field.flux(field.at(depth.tau, depth.albedo));
         }
     }

@@ -6,7 +6,7 @@
 
 namespace uw {
 
-bool CholeskyFactor::factor(std::span<const double> matrix, std::size_t size, double least_pivot) {
+bool CholeskyFactor::factor(std::span<const double> matrix, std::size_t size, double min_pivot) {
     size_ = size;
     lower_.assign(matrix.begin(), matrix.end());
     for (std::size_t i = 0; i < size; ++i) {
@@ -19,7 +19,7 @@ bool CholeskyFactor::factor(std::span<const double> matrix, std::size_t size, do
                 row[j] = sum / other[j];
                 continue;
             }
-            if (!(sum > least_pivot * row[i])) return false;
+            if (!(sum > min_pivot * row[i])) return false;
             row[i] = std::sqrt(sum);
         }
     }
@@ -39,7 +39,7 @@ void CholeskyFactor::solve(std::span<double> x) const {
 
 namespace {
 
-constexpr int k_most_terms = 6;  // 1, x, y, x^2, xy, y^2
+constexpr int k_max_terms = 6;  // 1, x, y, x^2, xy, y^2
 constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
 // In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
 // light less well.
@@ -47,9 +47,9 @@ constexpr double k_agreement = 4;
 // Noise that need not be smoothed any further, relative to differences that do not matter.
 constexpr double k_quiet = 0.5;
 // The least pivot of normal equations, relative to the largest.
-constexpr double k_least_pivot = 1e-6;
+constexpr double k_min_pivot = 1e-6;
 
-using Terms = std::array<double, k_most_terms>;
+using Terms = std::array<double, k_max_terms>;
 
 // Calls visit(node, weight, terms) for the nodes nearer than reach + 1, with a weight that falls to
 // 0 there, and terms of x and y in units of it.
@@ -78,7 +78,7 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach) {
             for (std::size_t j = 0; j <= i; ++j) normal[i * k_terms + j] += weighted * t[j];
         }
     });
-    if (used + 1 < 2 * k_terms || !cholesky_.factor(normal, k_terms, k_least_pivot)) return false;
+    if (used + 1 < 2 * k_terms || !cholesky_.factor(normal, k_terms, k_min_pivot)) return false;
     Terms solution{1};  // of which the first term is the value at (0, 0)
     cholesky_.solve(std::span(solution).first(k_terms));
     tried_.resize(used);

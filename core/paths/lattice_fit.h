@@ -12,8 +12,8 @@ class CholeskyFactor {
   public:
     /// Factors a matrix of `size` rows of `size` numbers, of which the lower triangle is read.
     /// False, and then there is no factor, if it is nearly singular: if what elimination leaves of
-    /// an element of the diagonal is not above `least_pivot` times that element.
-    bool factor(std::span<const double> matrix, std::size_t size, double least_pivot);
+    /// an element of the diagonal is not above `min_pivot` times that element.
+    bool factor(std::span<const double> matrix, std::size_t size, double min_pivot);
 
     /// Replaces a right-hand side by the solution. Precondition: there is a factor, of its size.
     void solve(std::span<double> x) const;

@@ -14,7 +14,7 @@ namespace {
 // spread gives the variance.
 constexpr int k_node_batches = 4, k_batches_of_half = 2;
 // Least share of a surface's light that is taken to reach the camera.
-constexpr double k_least_seen = 1e-3;
+constexpr double k_min_seen = 1e-3;
 
 enum NodeStream : std::uint64_t {
     k_node_water = 1,
@@ -46,9 +46,9 @@ namespace {
 
 // None is left without, or nothing would tell where the guess is wrong.
 double share_of(double guess, double typical) {
-    constexpr double k_even = 0.3, k_most_of_typical = 8;
+    constexpr double k_even = 0.3, k_max_of_typical = 8;
     if (!(typical > 0)) return 1;
-    return std::min(k_even + (1 - k_even) * guess / typical, k_most_of_typical);
+    return std::min(k_even + (1 - k_even) * guess / typical, k_max_of_typical);
 }
 
 }  // namespace
@@ -218,11 +218,11 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
     node.mean_light = light.is_known ? light.own : 0;
     node.guessed_water = light.own - light.of_surface;
     if (!has_hit) return;
-    constexpr double k_least_reflectance = 0.1;
+    constexpr double k_min_reflectance = 0.1;
     double reflectance = 0;
     for (std::size_t b = 0; b < bands(); ++b)
         reflectance += sample.hit.reflectance[b] / static_cast<double>(bands());
-    node.guessed_surface = light.of_surface / std::max(reflectance, k_least_reflectance);
+    node.guessed_surface = light.of_surface / std::max(reflectance, k_min_reflectance);
 }
 
 void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
@@ -249,9 +249,9 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
     if (light.is_known && weights_.vary()) {
         // Particles may be lit up anywhere, of which the lamps' guides know nothing. What is
         // typical is guessed without most of the scattered light: it is a few times as much.
-        constexpr double k_ambient = 10, k_least_own = 3;
+        constexpr double k_ambient = 10, k_min_own = 3;
         light.ambient = std::max(light.ambient, k_ambient * typical_light);
-        light.own = std::max(light.own, k_least_own * typical_light);
+        light.own = std::max(light.own, k_min_own * typical_light);
     }
     const double per_band = 1.0 / static_cast<double>(bands());
     w.batch_mean.assign(count, 0.0);
@@ -367,7 +367,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
     hit.reflectance = per_band(bands, [](std::size_t) { return 1.0; });
     hit.has_material = false;
     // Weights are those of what the camera sees, so that paths end as they would in a pixel.
-    const double share = std::max(node.surface_seen, k_least_seen);
+    const double share = std::max(node.surface_seen, k_min_seen);
     std::ranges::fill(w.segment.transmittance, share);
     const auto means = trace(k_node_diffuse, share, &NodeLight::diffuse);
     for (std::size_t half = 0; half < node.halves.size(); ++half) {

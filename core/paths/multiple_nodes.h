@@ -148,17 +148,17 @@ class MultipleNodes {
 
 /// The cosine of the largest angle between the normals at two places whose indirect light is
 /// alike.
-inline constexpr double k_least_node_cosine = 0.96;
+inline constexpr double k_min_node_cosine = 0.96;
 
 /// How much of the water of an interval lies before a node's surface: of `enough` of it the node
 /// tells what light there is, of `little` if no other node does.
 enum class NodeReach : unsigned char { none, little, enough };
 inline NodeReach reach_into(const MultipleNode& node, const DistanceIntervals& intervals,
                             std::size_t interval) {
-    constexpr double k_least_share = 0.3;
+    constexpr double k_min_share = 0.3;
     if (node.mean_weights.empty() || node.reach <= intervals.begin(interval))
         return NodeReach::none;
-    return intervals.share(interval, 0, node.reach) >= k_least_share ? NodeReach::enough
+    return intervals.share(interval, 0, node.reach) >= k_min_share ? NodeReach::enough
                                                                      : NodeReach::little;
 }
 
@@ -166,7 +166,7 @@ inline NodeReach reach_into(const MultipleNode& node, const DistanceIntervals& i
 inline bool see_same_surface(const MultipleNode& a, const MultipleNode& b) {
     return a.surface && b.surface && a.surface->object_id == b.surface->object_id &&
            a.surface->is_glossy == b.surface->is_glossy &&
-           glm::dot(a.surface->normal, b.surface->normal) >= k_least_node_cosine;
+           glm::dot(a.surface->normal, b.surface->normal) >= k_min_node_cosine;
 }
 
 }  // namespace uw

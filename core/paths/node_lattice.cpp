@@ -286,22 +286,22 @@ namespace {
 
 // The paths of each kind at a node: more would leave less noise than there is light between the
 // nodes of a small image.
-constexpr double k_fewest_node_paths = 8, k_most_node_paths = 4096;
+constexpr double k_fewest_node_paths = 8, k_max_node_paths = 4096;
 // What smoothing leaves of the variance of nodes, in the example scenes: 0.02 to 0.05, in plumes
 // more, and how much more it is of that on surfaces, where fewer nodes see the same.
 constexpr double k_smoothed_variance = 0.03, k_more_on_surfaces = 2.5;
 // The work of each node and each path that the effort names.
 constexpr double k_work_of_effort = 6;
-constexpr double k_least_cost = 0.05;
+constexpr double k_min_cost = 0.05;
 
 }  // namespace
 
 // Numbers in proportion to the deviation of a path over the root of its cost leave the least error.
 NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
-    constexpr int k_paths = 64, k_fewest_across = 5, k_most_across = 16;
+    constexpr int k_paths = 64, k_fewest_across = 5, k_max_across = 16;
     constexpr double k_share = 0.05;  // of the paths
     const int across = std::clamp(static_cast<int>(std::sqrt(k_share * effort.paths / k_paths)),
-                                  k_fewest_across, k_most_across);
+                                  k_fewest_across, k_max_across);
     NodeLattice pilot(estimator, NodeLattice::Positions::amid(estimator.rays(), across));
     const NodePaths few{k_paths, k_paths, k_paths};
     const ShareCallback untold = [](double) {};
@@ -336,7 +336,7 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
         of_surface += k_more_on_surfaces * variance * seen * seen;
     }
     for (double* of_kind : {&cost.surface, &cost.lit, &cost.water})
-        *of_kind = std::max(*of_kind / count, k_least_cost);
+        *of_kind = std::max(*of_kind / count, k_min_cost);
     const double surface = std::sqrt(of_surface / cost.surface);
     const double seen = std::sqrt(of_lit / cost.lit), water = std::sqrt(of_water / cost.water);
     const double work = surface * cost.surface + seen * cost.lit + water * cost.water;
@@ -347,7 +347,7 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
     }
     const auto number = [&](double of_kind) {
         return static_cast<int>(
-            std::clamp(scale * of_kind, k_fewest_node_paths, k_most_node_paths));
+            std::clamp(scale * of_kind, k_fewest_node_paths, k_max_node_paths));
     };
     // The few that find water close to a lamp are bright, and rare: some show as spots.
     constexpr double k_fewest_in_water = 8;

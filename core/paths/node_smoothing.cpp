@@ -158,12 +158,12 @@ struct IntervalOfNodes {
           variances{weights, weights},
           squares(nodes.size() * bands) {
         // Less is not told from nothing by numbers of this precision.
-        constexpr float k_least_weight = 1e-30F;
+        constexpr float k_min_weight = 1e-30F;
         const std::size_t values = groups * bands;
         for (std::size_t n = 0; n < nodes.size(); ++n) {
             const MultipleNode& node = nodes[n];
             reach[n] = reach_into(node, intervals, interval);
-            if (reach[n] == NodeReach::none || !(node.mean_weights[interval] >= k_least_weight))
+            if (reach[n] == NodeReach::none || !(node.mean_weights[interval] >= k_min_weight))
                 continue;
             weights[n] = node.mean_weights[interval];
             for (const std::size_t half : {0U, 1U}) {

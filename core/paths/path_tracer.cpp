@@ -19,19 +19,19 @@ namespace {
 
 // The light that a path may meet anywhere, relative to that of the surface its pixel sees, and at
 // least relative to the pixel's.
-constexpr double k_ambient_share = 0.5, k_least_ambient = 0.05;
+constexpr double k_ambient_share = 0.5, k_min_ambient = 0.05;
 // Paths are not followed beyond this optical depth of the camera ray: e^-20 = 2e-9.
 constexpr double k_reach = 20;
 // Intervals of uniform water in which the first scattering is uniform; most of them in a plume.
 constexpr int k_views_of_ray = 8;
 constexpr double k_far_begin = 1.5, k_far_step = 0.5;
-constexpr std::size_t k_most_knots = 64;
+constexpr std::size_t k_max_knots = 64;
 // Places along the ray at which the lamps' light is looked up: between them it is followed.
-constexpr std::size_t k_most_guides = 6;
+constexpr std::size_t k_max_guides = 6;
 // Share of the first scatterings that follow the transmittance alone, so that none is starved.
 constexpr double k_defensive_share = 0.1;
 // The share of paths of a kind, relative to its share of the light, and at least.
-constexpr double k_paths_of_share = 4, k_least_paths = 0.1, k_most_paths = 8;
+constexpr double k_paths_of_share = 4, k_min_paths = 0.1, k_max_paths = 8;
 
 /// Per thread: preparing a ray does not allocate.
 struct Workspace {
@@ -106,7 +106,7 @@ void PathTracer::place_intervals(CameraSegment& segment) const {
     s.assign(1, 0.0);
     const ConcentrationProfile& profile = water.profile;
     if (!profile.s.empty()) {
-        const std::size_t stride = 1 + profile.s.size() / k_most_knots;
+        const std::size_t stride = 1 + profile.s.size() / k_max_knots;
         double last_full = 0;
         for (std::size_t i = 0; i + 1 < profile.s.size(); ++i) {
             if (profile.empty_between(i)) {
@@ -180,7 +180,7 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     w.guided.clear();
     w.plain.clear();
     double sum_guided = 0, sum_plain = 0, of_water = 0;
-    const std::size_t count = s.size() - 1, stride = 1 + (count - 1) / k_most_guides;
+    const std::size_t count = s.size() - 1, stride = 1 + (count - 1) / k_max_guides;
     const auto look_at = [&](double at) {
         optics.look_up(water, at, w.point);
         optics.find_scattering(w.point);
@@ -225,14 +225,14 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
         segment.light.ambient += k_ambient_share * light_of_surface[b] * per_band;
     }
     segment.light.own = sum_guided * per_band + segment.light.of_surface;
-    segment.light.ambient = std::max(segment.light.ambient, k_least_ambient * segment.light.own);
+    segment.light.ambient = std::max(segment.light.ambient, k_min_ambient * segment.light.own);
     segment.paths = {};
     if (segment.light.own > 0) {
         segment.paths.water = std::clamp(k_paths_of_share * of_water * per_band / segment.light.own,
-                                         k_least_paths, 1.0);
+                                         k_min_paths, 1.0);
         if (has_surface)
             segment.paths.surface =
-                std::clamp(k_paths_of_share * reflected / segment.light.own, k_least_paths, 1.0);
+                std::clamp(k_paths_of_share * reflected / segment.light.own, k_min_paths, 1.0);
     } else {
         // Nothing is known of it, as where only emission lights the scene: by throughput alone.
         segment.light = {.own = 1, .ambient = 1 / k_ambient_beyond, .is_known = false};
@@ -312,7 +312,7 @@ double PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
 
 void CameraSegment::multiply_paths(const PathCounts& times) {
     const auto multiply = [](double& count, double by) {
-        count = std::clamp(count * by, k_least_paths, k_most_paths);
+        count = std::clamp(count * by, k_min_paths, k_max_paths);
     };
     multiply(paths.water, times.water);
     multiply(paths.lit, times.lit);

@@ -88,7 +88,7 @@ double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expe
                                    std::vector<CandidateDirection>& candidates) const {
     constexpr int k_of_each = 3;
     constexpr double k_golden = 0.6180339887498949;  // spreads azimuths evenly
-    constexpr double k_least_light = 0.3;            // relative to the candidates' mean
+    constexpr double k_min_light = 0.3;            // relative to the candidates' mean
     candidates.clear();
     const double u_lobe = random.next(), a_lobe = random.next();
     const double u_own = random.next(), v_own = random.next();
@@ -135,7 +135,7 @@ double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expe
     }
     if (candidates.empty()) return 0;
     // None is guessed far darker than the mean: what shines there after all would be too bright.
-    const double least = k_least_light * sum / responding;
+    const double least = k_min_light * sum / responding;
     sum = 0;
     for (CandidateDirection& candidate : candidates) {
         candidate.light = std::max(candidate.light, least);

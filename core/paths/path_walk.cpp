@@ -17,17 +17,17 @@ constexpr double k_ambient_of_reflection = 0.2;
 constexpr double k_ambient_of_direction = 0.05;
 constexpr double k_ambient_of_place = 0.02, k_ambient_of_surface = 0.03;
 // What is expected of a path after all, relative to what its direction was chosen for.
-constexpr double k_least_expected = 0.2;
+constexpr double k_min_expected = 0.2;
 // The branches of one vertex, and of a path in all.
-constexpr double k_most_branches_of_vertex = 8, k_most_branches_of_path = 64;
+constexpr double k_max_branches_of_vertex = 8, k_max_branches_of_path = 64;
 // Where nothing is known of the light, and after many vertices, fewer paths go on than arrive.
 constexpr double k_survival_of_unknown = 0.97, k_survival_of_long = 0.9;
 constexpr int k_long = 100;
 constexpr int k_places = 3;
 // None is guessed far darker than the mean: what shines there after all would be too bright.
-constexpr double k_least_light_of_place = 0.3;
+constexpr double k_min_light_of_place = 0.3;
 // Of what is mirrored by the water's surface, relative to the pixel's light.
-constexpr double k_least_in_mirror = 0.1;
+constexpr double k_min_in_mirror = 0.1;
 // What is expected to come from there, from any direction, relative to what is around.
 constexpr double k_share_in_mirror = 0.3;
 constexpr double k_work_of_plain_vertex = 0.1;
@@ -92,12 +92,12 @@ double PathWalk::arriving(double radiance) const {
 }
 
 void PathWalk::from_surface_by_worth(const WaterSegment& segment) {
-    constexpr double k_least_worth = 0.3, k_most_worth = 4;
+    constexpr double k_min_worth = 0.3, k_max_worth = 4;
     Workspace& w = workspace_of_thread();
     const double light =
         arriving(guessed_reflection(tables_.guides, segment.hit, state_.throughput) +
                  k_ambient_beyond * light_.ambient);
-    const double n = std::clamp(light / light_.own, k_least_worth, k_most_worth);
+    const double n = std::clamp(light / light_.own, k_min_worth, k_max_worth);
     const int count = static_cast<int>(n + random_.next());
     if (count == 0) return;
     for (double& value : state_.throughput.first(tables_.optics.bands())) value /= n;
@@ -210,10 +210,10 @@ double PathWalk::branches(const CandidateDirection& chosen) const {
         std::max(throughput * (w.guides->multiple(chosen.direction) + chosen.of_particles +
                                k_ambient_beyond * light_.ambient) +
                      w.surface_ahead,
-                 throughput * k_least_expected * chosen.light);
+                 throughput * k_min_expected * chosen.light);
     double n =
-        std::min(expected / (light_.own * static_cast<double>(bands)), k_most_branches_of_vertex);
-    n = std::min(n, k_most_branches_of_path / state_.branches);
+        std::min(expected / (light_.own * static_cast<double>(bands)), k_max_branches_of_vertex);
+    n = std::min(n, k_max_branches_of_path / state_.branches);
     if (w.guides->all().empty()) n = std::min(n, k_survival_of_unknown);
     if (state_.scatterings + state_.reflections > k_long) n = std::min(n, k_survival_of_long);
     return n;
@@ -267,7 +267,7 @@ double PathWalk::radiance_in_mirror(const Spectrum& throughput) {
     double radiance =
         w.guides_at_water_surface.multiple(mirrored.direction) +
         tables_.guides.particles.at(mirrored.origin) +
-        std::max(k_ambient_of_direction * light_.ambient, k_least_in_mirror * light_.own);
+        std::max(k_ambient_of_direction * light_.ambient, k_min_in_mirror * light_.own);
     SurfaceHit hit;
     if (optics.scene().surfaces->closest_hit(mirrored, k_far, hit) && !hit.is_water_surface)
         radiance += std::exp(-optics.attenuation().uniform[optics.clearest_band()] * hit.distance) *
@@ -405,7 +405,7 @@ double PathWalk::draw_places(const Spectrum& to_end) {
         plain += place.scatters / place.density;
     }
     if (!(sum > 0)) return 0;
-    const double least = k_least_light_of_place * sum / plain;
+    const double least = k_min_light_of_place * sum / plain;
     sum = 0;
     for (Workspace::Place& place : w.places) {
         place.light = std::max(place.light, least);
@@ -449,7 +449,7 @@ bool PathWalk::go_to(double distance) {
 // Directions towards lit surfaces are not worth guessing at: light that small angles lead there
 // comes from all over them.
 const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
-    constexpr double k_least_weight = 0.1, k_survival_of_many = 0.9;
+    constexpr double k_min_weight = 0.1, k_survival_of_many = 0.9;
     constexpr int k_many = 100;  // scatterings, in water that absorbs next to nothing
     Workspace& w = workspace_of_thread();
     const WaterOptics& optics = tables_.optics;
@@ -493,7 +493,7 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
         // What little is left of a path goes on in few, and none goes on for ever.
         if (is_first) first_weight = weight;
         if (!(weight > 0)) return nullptr;
-        const double survival = std::min(weight / (k_least_weight * first_weight),
+        const double survival = std::min(weight / (k_min_weight * first_weight),
                                          state_.scatterings > k_many ? k_survival_of_many : 1);
         const double of_survival = random_.next();
         if (survival < 1) {

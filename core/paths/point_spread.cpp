@@ -15,10 +15,10 @@ namespace {
 constexpr double k_widest_scattering = 1;  // that can form an image [rad]
 // Optical depths of scattering between which surfaces are left out, little by little: their own
 // light is too faint to tell what there is of it.
-constexpr double k_full_depth = 8, k_most_depth = 12;
+constexpr double k_full_depth = 8, k_max_depth = 12;
 constexpr int k_distances_of_interval = 2;  // in the table
 // Below the least frequency all is even.
-constexpr double k_least_frequency = 0.0875;  // [1/rad]
+constexpr double k_min_frequency = 0.0875;  // [1/rad]
 constexpr double k_frequency_step = 0.25;     // [octaves]
 
 using Exponents = std::array<double, PointSpread::k_frequencies>;
@@ -48,7 +48,7 @@ class PhaseTransfer {
     }
 
     double at(double k) const {
-        const double place = std::log2(k / k_least_frequency) / k_frequency_step;
+        const double place = std::log2(k / k_min_frequency) / k_frequency_step;
         if (!(place > 0)) return values_.front();
         const auto i = std::min(static_cast<std::size_t>(place), values_.size() - 2);
         const double t = std::min(1.0, place - static_cast<double>(i));
@@ -62,7 +62,7 @@ class PhaseTransfer {
 }  // namespace
 
 double PointSpread::frequency(std::size_t index) {
-    return k_least_frequency * std::exp2(k_frequency_step * static_cast<double>(index));
+    return k_min_frequency * std::exp2(k_frequency_step * static_cast<double>(index));
 }
 
 PointSpread::PointSpread(const Medium& medium, const DistanceIntervals& intervals, double farthest)
@@ -98,9 +98,9 @@ PointSpread::PointSpread(const Medium& medium, const DistanceIntervals& interval
             for (std::size_t b = 0; b < bands_; ++b) {
                 Transfer& transfer = transfers_[(interval * bands_ + b) * distances_.size() + d];
                 const double depth = medium.uniform.total_scattering()[b] * distance;
-                if (depth >= k_most_depth) continue;
+                if (depth >= k_max_depth) continue;
                 const double share =
-                    std::min(1.0, (k_most_depth - depth) / (k_most_depth - k_full_depth));
+                    std::min(1.0, (k_max_depth - depth) / (k_max_depth - k_full_depth));
                 for (std::size_t i = 0; i < k_frequencies; ++i) {
                     double exponent = 0;
                     for (std::size_t m = 0; m < phases.size(); ++m)

@@ -53,8 +53,8 @@ ScatteringTables::ScatteringTables(const Medium& medium, const LampField::Finene
             const double c = coefficients.attenuation(b);
             if (!(c > 0)) continue;
             const double albedo = coefficients.total_scattering()[b] / c;
-            least_albedo_ = std::min(least_albedo_, albedo);
-            greatest_albedo_ = std::max(greatest_albedo_, albedo);
+            min_albedo_ = std::min(min_albedo_, albedo);
+            max_albedo_ = std::max(max_albedo_, albedo);
         }
     };
     include(medium.uniform);
@@ -77,8 +77,8 @@ LampField ScatteringTables::make_field() const {
         of_line.push_back(mean * dpsi);
         of_direction.push_back(2 * std::numbers::pi * mean * dpsi * h * dpsi);
     }
-    return {HalfTangentDensity(of_direction), HalfTangentDensity(of_line), least_albedo_,
-            greatest_albedo_, fineness_};
+    return {HalfTangentDensity(of_direction), HalfTangentDensity(of_line), min_albedo_,
+            max_albedo_, fineness_};
 }
 
 }  // namespace uw

@@ -48,7 +48,7 @@ struct ScatteringTables {
     LampField make_field() const;
 
     LampField::Fineness fineness_;
-    double least_albedo_ = 1, greatest_albedo_ = 0;
+    double min_albedo_ = 1, max_albedo_ = 0;
     mutable std::mutex field_mutex_;
     mutable std::optional<LampField> field_;  // made where it is first asked for
 };

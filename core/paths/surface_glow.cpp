@@ -15,7 +15,7 @@ namespace {
 // Angles of cells for which levels are fitted, in between they are interpolated.
 constexpr double k_scales_of_octave = 4;
 // Weights that are left out, relative to the surface's own light.
-constexpr float k_least_weight = 1e-5F;
+constexpr float k_min_weight = 1e-5F;
 // As many cells as these tell what is seen, even if they are parts of pixels.
 constexpr int k_fine_cells = 130'000;
 // Cells show the same surface as a pixel if their distances differ by less, relatively.
@@ -95,7 +95,7 @@ class SurfaceGlow::Spreading {
         pyramid_.begin(cells.width(), cells.height());
         const std::size_t distances = spread_.distances().size();
         for (std::size_t level = 0; level < levels(); ++level) {
-            if (greatest_[level] < k_least_weight) continue;
+            if (greatest_[level] < k_min_weight) continue;
             image_.resize(cells.width(), cells.height());
             for (std::size_t i = 0; i < cells.size(); ++i) {
                 const Cell& cell = cells[i];

@@ -113,10 +113,10 @@ void read_resolution(const ConfigValue& both, const ConfigValue& width, const Co
 }
 
 std::string too_many_pixels(int width, int height) {
-    constexpr long long k_most_pixels = 1LL << 28;
-    if (static_cast<long long>(width) * height <= k_most_pixels) return "";
+    constexpr long long k_max_pixels = 1LL << 28;
+    if (static_cast<long long>(width) * height <= k_max_pixels) return "";
     return fmt::format("{} x {} are more than {} pixels; give a smaller image", width, height,
-                       k_most_pixels);
+                       k_max_pixels);
 }
 
 double read_refractive_index(const ConfigValue& value) {

@@ -17,7 +17,7 @@ namespace {
 /// Directions shorter than this cannot be distinguished from zero.
 constexpr double k_shortest_direction = 1e-12;
 /// No key has meaningful values beyond this, and squares and products would overflow later.
-constexpr double k_largest_number = 1e12;
+constexpr double k_max_number = 1e12;
 
 bool is_digit(char c) {
     return c >= '0' && c <= '9';
@@ -78,7 +78,7 @@ double ConfigValue::number(std::string_view mend) const {
     double value = 0;
     const NumberText outcome = parse_number(node_->scalar, value);
     if (outcome != NumberText::number) fail_number(outcome, mend);
-    if (std::abs(value) > k_largest_number) {
+    if (std::abs(value) > k_max_number) {
         fail(fmt::format("{} is larger than anything in a scene; {}", value, mend));
     }
     return value;

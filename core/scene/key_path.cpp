@@ -19,7 +19,7 @@ namespace uw {
 namespace {
 
 constexpr std::size_t k_longest_origin = 80;
-constexpr std::size_t k_most_steps = 32;  // deeper than any key; the tree is walked recursively
+constexpr std::size_t k_max_steps = 32;  // deeper than any key; the tree is walked recursively
 
 /// Takes an index, "[0]" or "[*]", from the beginning of `text`; false if it has none.
 bool take_index(std::string_view& text, std::vector<KeyStep>& steps) {
@@ -238,7 +238,7 @@ std::vector<KeyStep> parse_key_path(std::string_view path) {
         if (path.front() != '.') return {};
         path.remove_prefix(1);
     }
-    if (steps.size() > k_most_steps) return {};
+    if (steps.size() > k_max_steps) return {};
     return steps;
 }
 

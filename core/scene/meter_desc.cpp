@@ -12,7 +12,7 @@ constexpr auto k_example =
     "write {name: station, position: [0, -5, 0]}, or {name: cast, from: [0, 0, 0], to: [0, -30, "
     "0], "
     "count: 16}";
-constexpr int k_most_points = 1000;
+constexpr int k_max_points = 1000;
 
 Point3 read_point(const ConfigValue& value) {
     return at_origin_plus(value.vector("give a point in the world, three lengths in metres"));
@@ -37,7 +37,7 @@ MeterDesc read_meter(const ConfigValue& value, std::size_t number, const SceneCo
     const Point3 from = read_point(map.require("from", k_example));
     const Point3 to = read_point(map.require("to", k_example));
     const int count = map.require("count", k_example)
-                          .integer(2, k_most_points, "give how many points of the line, 2 to 1000");
+                          .integer(2, k_max_points, "give how many points of the line, 2 to 1000");
     for (int i = 0; i < count; ++i)
         meter.points.push_back(from + static_cast<double>(i) / (count - 1) * (to - from));
     return meter;

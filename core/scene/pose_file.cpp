@@ -37,7 +37,7 @@ struct PoseLine {
 };
 
 /// The largest number in a file of poses.
-constexpr double k_largest_pose_number = 1e12;
+constexpr double k_max_pose_number = 1e12;
 
 /// The last time of a file of poses, in the year 2116: differences of two fit into 64 bits [ns].
 constexpr std::int64_t k_last_stamp = std::int64_t{1} << 62;
@@ -72,9 +72,9 @@ std::optional<std::int64_t> decimal_in_units(std::string_view text, int places) 
     if (digits.empty()) return 0;
     std::uint64_t units = 0;
     bool rounds_up = false;
-    constexpr int k_most_digits = 19;
+    constexpr int k_max_digits = 19;
     const int kept = static_cast<int>(digits.size()) + power;
-    if (kept > k_most_digits) return std::nullopt;
+    if (kept > k_max_digits) return std::nullopt;
     if (power > 0) digits.append(static_cast<std::size_t>(power), '0');
     if (power < 0 && kept >= 0) rounds_up = digits[static_cast<std::size_t>(kept)] >= '5';
     if (power < 0) digits.resize(static_cast<std::size_t>(std::max(kept, 0)));
@@ -135,7 +135,7 @@ void PoseLine::fail(const std::string& what) const {
 
 double PoseLine::parsed(std::string_view cell, std::string_view name) const {
     double value = 0;
-    if (parse_number(cell, value) != NumberText::number || std::abs(value) > k_largest_pose_number)
+    if (parse_number(cell, value) != NumberText::number || std::abs(value) > k_max_pose_number)
         fail(fmt::format("{}: expected a number of at most 1e12, found '{}'", name,
                          printable(cell)));
     return value;
@@ -208,7 +208,7 @@ std::vector<std::string_view> cells_of(std::string_view line, std::string_view s
 }
 
 void check_count(const PoseLine& line, std::size_t poses) {
-    if (poses >= k_most_poses)
+    if (poses >= k_max_poses)
         line.fail("the file has more than a million poses; give those that are needed");
 }
 
@@ -350,7 +350,7 @@ std::vector<NamedPose> read_colmap_binary(std::string_view bytes, const std::str
         std::array<double, 7> v{};
         for (double& number : v) {
             number = file.take<double>();
-            if (!(std::abs(number) <= k_largest_pose_number))
+            if (!(std::abs(number) <= k_max_pose_number))
                 image.fail("has a number that is none, or above 1e12");
         }
         file.take<std::uint32_t>();  // the camera's
@@ -408,7 +408,7 @@ class NerfstudioFrame {
         if (!row.is_array() || row.size() != 4 || !row[j].is_number())
             fail("its transform_matrix has not four rows of four numbers");
         const double x = row[j].get<double>();
-        if (!(std::abs(x) <= k_largest_pose_number))
+        if (!(std::abs(x) <= k_max_pose_number))
             fail("its transform_matrix has a number above 1e12");
         return x;
     }
@@ -447,7 +447,7 @@ std::vector<NamedPose> read_nerfstudio(std::string_view text, const std::string&
     if (!json.is_object() || frames == json.end() || !frames->is_array())
         throw InputError(
             fmt::format("{}: has no list 'frames', as nerfstudio's transforms.json has", origin));
-    if (frames->size() > k_most_poses)
+    if (frames->size() > k_max_poses)
         throw InputError(
             fmt::format("{}: has more than a million poses; give those that are needed", origin));
     std::vector<NamedPose> named;
@@ -457,7 +457,7 @@ std::vector<NamedPose> read_nerfstudio(std::string_view text, const std::string&
 }
 
 // COLMAP's images.txt consists almost entirely of points, so that it may be large.
-constexpr std::size_t k_most_bytes = std::size_t{1} << 30;
+constexpr std::size_t k_max_bytes = std::size_t{1} << 30;
 
 std::string_view without_mark(std::string_view text) {
     constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
@@ -493,7 +493,7 @@ struct PoseText {
 
     PoseText(const std::filesystem::path& file, const std::string& subject)
         : origin(fmt::format("{}: {}", subject, printable(file.string(), 300))),
-          text(read_text_file(file, origin, k_most_bytes, "file of poses")),
+          text(read_text_file(file, origin, k_max_bytes, "file of poses")),
           is_binary(file.extension() == ".bin") {}
 };
 

@@ -24,12 +24,12 @@ struct PoseFile {
 };
 
 /// The most poses that a file may have.
-inline constexpr std::size_t k_most_poses = 1'000'000;
+inline constexpr std::size_t k_max_poses = 1'000'000;
 
 /// Reads a file of poses. `subject` is what messages begin with: the scene entry that names the
 /// file. Quaternions and matrices are normalised; they may be off by 1e-3 from rounding. Throws
 /// IoError, and InputError of one line: a number that is missing or none, not a rotation, times
-/// that do not ascend, images of the same name, no pose or more than k_most_poses.
+/// that do not ascend, images of the same name, no pose or more than k_max_poses.
 ///
 /// Times are exact to the nanosecond, whatever the clock.
 ///

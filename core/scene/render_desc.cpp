@@ -125,7 +125,7 @@ RenderDesc read_render(const ConfigValue& value, const SceneContext& context) {
     if (const auto entry = map.find("samples")) {
         const bool paths = render.integrator == RenderDesc::Integrator::path;
         render.samples =
-            entry->integer(1, paths ? k_most_paths : k_most_samples, "give the samples per pixel");
+            entry->integer(1, paths ? k_max_paths : k_max_samples, "give the samples per pixel");
     }
     if (const auto entry = map.find("shutter")) {
         constexpr double k_longest = 60;

@@ -63,7 +63,7 @@ struct RenderDesc {
     SourceLocation output_where;
     ColourDesc colour;
     std::optional<ViewDesc> view;  ///< none: sRGB, or what the environment says
-    /// Rays per pixel, 1..k_most_samples or, of light paths, k_most_paths; if omitted, as many as
+    /// Rays per pixel, 1..k_max_samples or, of light paths, k_max_paths; if omitted, as many as
     /// the integrator needs (samples_of).
     std::optional<int> samples;
     double shutter = 0;  ///< exposure time [s], 0..60, around the frame's; 0: no motion blur
@@ -80,7 +80,7 @@ struct RenderDesc {
 };
 
 /// The most rays per pixel, and the most light paths.
-inline constexpr int k_most_samples = 4096, k_most_paths = 65536;
+inline constexpr int k_max_samples = 4096, k_max_paths = 65536;
 
 /// The qualities by their names in scene files.
 inline constexpr std::array<std::pair<std::string_view, RenderDesc::Quality>, 3> k_quality_names{

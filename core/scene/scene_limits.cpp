@@ -17,7 +17,7 @@ namespace uw {
 namespace {
 
 /// The largest tangent of the angle between a ray of the image and the optical axis: 89.99 degrees.
-constexpr double k_largest_slope = 1e4;
+constexpr double k_max_slope = 1e4;
 
 /// The smallest width of a pixel, as such a tangent: single precision does not tell narrower ones
 /// apart.
@@ -31,14 +31,14 @@ constexpr double k_narrowest_beam = 0.01;
 constexpr double k_lowest_sun = 89;
 
 /// The largest intensity [W/sr], power [W] or flux [lm] of a lamp.
-constexpr double k_largest_brightness = 1e12;
+constexpr double k_max_brightness = 1e12;
 
 /// The largest concentration [ppm] or coefficient [1/m] per unit of a grid's value.
-constexpr double k_largest_per_unit = 1e12;
+constexpr double k_max_per_unit = 1e12;
 
 /// The smallest and largest number of a sensor or of snow that is not 0: no real one is beyond, and
 /// single precision holds their products.
-constexpr double k_least_number = 1e-12, k_greatest_number = 1e12;
+constexpr double k_min_number = 1e-12, k_max_number = 1e12;
 
 /// One entry of the scene, for its messages.
 class Checked {
@@ -54,22 +54,22 @@ class Checked {
     /// Neither so large nor, unless it is 0, so small that nothing real is meant.
     void number(std::string_view name, double value) const {
         constexpr std::string_view k_mend = "check its unit";
-        at_most(k_greatest_number, name, {value}, k_mend);
-        if (value != 0 && std::abs(value) < k_least_number)
-            fail(fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_least_number,
+        at_most(k_max_number, name, {value}, k_mend);
+        if (value != 0 && std::abs(value) < k_min_number)
+            fail(fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_min_number,
                              k_mend));
     }
     void place(std::string_view name, const Vector3& v) const {
-        at_most(k_largest_coordinate, name, {v.x, v.y, v.z},
+        at_most(k_max_coordinate, name, {v.x, v.y, v.z},
                 "lengths are in metres; scale the scene or move it nearer to the origin");
     }
     void place(std::string_view name, const Point3& p) const { place(name, from_origin(p)); }
     void length(std::string_view name, double value) const {
-        at_most(k_largest_coordinate, name, {value}, "lengths are in metres");
+        at_most(k_max_coordinate, name, {value}, "lengths are in metres");
     }
     void matrix(std::string_view name, const Matrix3& m) const {
         for (int column = 0; column < 3; ++column)
-            at_most(k_largest_coordinate, name, {m[column].x, m[column].y, m[column].z},
+            at_most(k_max_coordinate, name, {m[column].x, m[column].y, m[column].z},
                     "scale the scene to metres");
     }
     template <class Values>
@@ -123,12 +123,12 @@ void check(const CameraDesc& camera) {
     const IntrinsicsDesc& lens = camera.intrinsics;
     const auto check_axis = [&](char axis, double focal, double centre, int pixels) {
         const double farthest = std::max(std::abs(centre), std::abs(pixels - centre));
-        if (!(farthest <= k_largest_slope * focal))
+        if (!(farthest <= k_max_slope * focal))
             checked.fail(
                 fmt::format("f{0} = {1:g} and c{0} = {2:g} pixels show more than 89.99 degrees "
                             "from the optical "
                             "axis; give f{0} >= {3:g}, or a distortion of the fisheye model",
-                            axis, focal, centre, farthest / k_largest_slope));
+                            axis, focal, centre, farthest / k_max_slope));
         if (!(1 >= k_narrowest_pixel * focal))
             checked.fail(fmt::format("f{} = {:g} pixels is beyond {:g}; give it in pixels", axis,
                                      focal, 1 / k_narrowest_pixel));
@@ -185,9 +185,9 @@ void check(const LampDesc& lamp) {
     }
     constexpr auto k_mend = "give W/sr, W or lm";
     if (lamp.intensity)
-        checked.all_at_most(k_largest_brightness, "intensity", *lamp.intensity, k_mend);
-    if (lamp.power) checked.all_at_most(k_largest_brightness, "power", *lamp.power, k_mend);
-    if (lamp.lumens) checked.at_most(k_largest_brightness, "flux", {*lamp.lumens}, k_mend);
+        checked.all_at_most(k_max_brightness, "intensity", *lamp.intensity, k_mend);
+    if (lamp.power) checked.all_at_most(k_max_brightness, "power", *lamp.power, k_mend);
+    if (lamp.lumens) checked.at_most(k_max_brightness, "flux", {*lamp.lumens}, k_mend);
 }
 
 void check(const GeometryDesc& geometry) {
@@ -208,14 +208,14 @@ void check(const VolumeDesc& volume) {
     for (const GridMappingDesc& grid : volume.grids) {
         const Checked mapping(grid.where);
         constexpr auto k_mend = "values are in ppm, coefficients in 1/m per unit";
-        mapping.at_most(k_largest_per_unit, "concentration", {grid.small_ppm, grid.large_ppm},
+        mapping.at_most(k_max_per_unit, "concentration", {grid.small_ppm, grid.large_ppm},
                         k_mend);
         for (const SpeciesAmount& amount : grid.amounts)
             if (amount.unit != SpeciesAmount::Unit::number)
-                mapping.at_most(k_largest_per_unit, "concentration", {amount.amount}, k_mend);
+                mapping.at_most(k_max_per_unit, "concentration", {amount.amount}, k_mend);
         if (!grid.optics) continue;
-        mapping.all_at_most(k_largest_per_unit, "absorption", grid.optics->absorption, k_mend);
-        mapping.all_at_most(k_largest_per_unit, "scattering", grid.optics->scattering, k_mend);
+        mapping.all_at_most(k_max_per_unit, "absorption", grid.optics->absorption, k_mend);
+        mapping.all_at_most(k_max_per_unit, "scattering", grid.optics->scattering, k_mend);
     }
 }
 

@@ -7,7 +7,7 @@ namespace uw {
 /// The largest coordinate of a camera, lamp, shape or volume and the largest length of a part of a
 /// camera [m]. Rays are traced in single precision, which resolves 1 m out there; products of four
 /// such numbers are still far from its largest, 3e38.
-inline constexpr double k_largest_coordinate = 1e7;
+inline constexpr double k_max_coordinate = 1e7;
 
 /// Throws InputError "<where>: <what>; <mend>" for the first quantity of a resolved scene, wherever
 /// it comes from, that is not finite or beyond what rays can be traced with: the limits above. What

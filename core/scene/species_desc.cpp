@@ -73,8 +73,8 @@ void read_diameters(const ConfigValue& value, double least, double greatest, dou
 
 namespace {
 
-constexpr double k_least = k_least_diameter, k_greatest = k_greatest_diameter;
-constexpr double k_least_sigma = 1.02;  // narrower ones have halos finer than the tables' angles
+constexpr double k_least = k_min_diameter, k_greatest = k_max_diameter;
+constexpr double k_min_sigma = 1.02;  // narrower ones have halos finer than the tables' angles
 
 SizesDesc read_sizes(const ConfigValue& value, const SceneContext& context) {
     constexpr auto k_example =
@@ -100,7 +100,7 @@ SizesDesc read_sizes(const ConfigValue& value, const SceneContext& context) {
         case Type::lognormal:
             sizes.median = read_diameter(map.require("median", k_example), k_least, k_greatest);
             if (const auto entry = map.find("sigma"))
-                sizes.sigma = entry->within(k_least_sigma, 10,
+                sizes.sigma = entry->within(k_min_sigma, 10,
                                             "give the geometric standard deviation, such as 1.6");
             break;
         case Type::gamma:

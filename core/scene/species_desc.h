@@ -14,7 +14,7 @@
 namespace uw {
 
 /// The diameters of particles of a species are from here to there [m].
-inline constexpr double k_least_diameter = 10e-9, k_greatest_diameter = 5e-3;
+inline constexpr double k_min_diameter = 10e-9, k_max_diameter = 5e-3;
 
 /// How the diameters of a species' particles are distributed. f(D) dD is the number of particles
 /// with diameters in dD, up to a factor.

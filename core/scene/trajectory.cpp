@@ -234,8 +234,8 @@ double Trajectory::place_at_length(double length) const {
     const double rest = length - lengths_[span.first];
     double low = begin, high = knots_[span.first + 1];
     double u = begin + span.share * (high - low);
-    constexpr int k_most_steps = 60;  // of bisection alone
-    for (int step = 0; step < k_most_steps; ++step) {
+    constexpr int k_max_steps = 60;  // of bisection alone
+    for (int step = 0; step < k_max_steps; ++step) {
         const double excess = length_between(begin, u) - rest;
         if (std::abs(excess) <= 1e-13 * lengths_.back()) break;
         (excess > 0 ? high : low) = u;

@@ -17,10 +17,10 @@ namespace uw {
 namespace {
 
 constexpr double k_rigid_tolerance = 1e-6;
-constexpr double k_smallest_scale = 1e-9;
+constexpr double k_min_scale = 1e-9;
 
 /// Closer to the view direction than this angle [rad], `up` leaves the roll undefined.
-constexpr double k_smallest_up_angle = 1e-6;
+constexpr double k_min_up_angle = 1e-6;
 
 Affine read_rotate(const ConfigValue& value) {
     return Affine::rotation_xyz_degrees(
@@ -45,7 +45,7 @@ Affine read_look_at(ConfigMap& map, const Point3& position) {
     }
     const Vector3 forward = to_target / distance_to_target;
     const Vector3 side = glm::cross(forward, up);
-    if (glm::length(side) < k_smallest_up_angle) {
+    if (glm::length(side) < k_min_up_angle) {
         const ConfigValue& at = up_value ? *up_value : target_value;
         at.fail(fmt::format("up [{}, {}, {}] is parallel to the view direction; give another 'up'",
                             up.x, up.y, up.z));
@@ -128,7 +128,7 @@ Affine read_transform(const ConfigValue& value) {
         scale = entry->node().kind == ConfigNode::Kind::sequence ? entry->vector(k_mend)
                                                                  : Vector3(entry->number(k_mend));
         // smaller factors would make the map's determinant vanish
-        if (glm::any(glm::lessThan(glm::abs(scale), Vector3(k_smallest_scale)))) {
+        if (glm::any(glm::lessThan(glm::abs(scale), Vector3(k_min_scale)))) {
             entry->fail("must not be 0 or closer to 0 than 1e-9; give one factor, or one per axis");
         }
     }

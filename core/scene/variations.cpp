@@ -181,9 +181,9 @@ NormalDistribution normal(const ConfigValue& value, const std::optional<ConfigVa
     const std::array<double, 2> ends = interval(*within);
     d.low = ends[0];
     d.high = ends[1];
-    constexpr double k_least_probability = 1e-6;  // a mistake rather than a wish
+    constexpr double k_min_probability = 1e-6;  // a mistake rather than a wish
     if (normal_probability((d.low - d.mean) / d.deviation, (d.high - d.mean) / d.deviation) <
-        k_least_probability)
+        k_min_probability)
         within->fail("less than a millionth of the distribution lies within; widen it");
     return d;
 }

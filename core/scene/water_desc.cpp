@@ -73,7 +73,7 @@ PhaseDesc read_phase(const ConfigValue& value, const SceneContext& context) {
 
 namespace {
 
-constexpr double k_most_ppm = 1e6;
+constexpr double k_max_ppm = 1e6;
 
 std::vector<double> read_bands(const ConfigValue& value) {
     constexpr auto k_mend = "give wavelengths in nm, such as [620, 540, 450]";
@@ -114,10 +114,10 @@ void read_particles(const ConfigValue& value, WaterDesc& water) {
     ConfigMap map(value, std::move(keys), "write {small: 0.03, large: 0.05}");
     water.amounts = read_amounts(map, water.species);
     if (const auto entry = map.find("small")) {
-        water.small_ppm = entry->within(0, k_most_ppm, k_ppm);
+        water.small_ppm = entry->within(0, k_max_ppm, k_ppm);
     }
     if (const auto entry = map.find("large")) {
-        water.large_ppm = entry->within(0, k_most_ppm, k_ppm);
+        water.large_ppm = entry->within(0, k_max_ppm, k_ppm);
     }
     if (const auto entry = map.find("absorption")) {
         constexpr std::array<std::pair<std::string_view, bool>, 2> k_choices{
@@ -190,7 +190,7 @@ void read_dissolved(ConfigMap& map, WaterDesc& water) {
 }
 
 // Of the water against the air.
-constexpr double k_least_n = 1.0001, k_greatest_n = 3;
+constexpr double k_min_n = 1.0001, k_max_n = 3;
 
 WaterSurfaceDesc read_surface(const ConfigValue& value, const SceneContext& context) {
     constexpr auto k_example =
@@ -210,7 +210,7 @@ WaterSurfaceDesc read_surface(const ConfigValue& value, const SceneContext& cont
                              .direction("give the direction out of the water, not all 0");
     }
     if (const auto entry = map.find("n"))
-        surface.n = entry->within(k_least_n, k_greatest_n,
+        surface.n = entry->within(k_min_n, k_max_n,
                                   "give the water's refractive index against air, such as 1.34");
     if (const auto entry = map.find("waves")) {
         if (!surface.n)
@@ -222,8 +222,8 @@ WaterSurfaceDesc read_surface(const ConfigValue& value, const SceneContext& cont
     return surface;
 }
 
-constexpr double k_least_diameter = 1e-6, k_greatest_diameter = 0.1;
-constexpr int k_most_particles = 20'000'000;
+constexpr double k_min_diameter = 1e-6, k_max_diameter = 0.1;
+constexpr int k_max_particles = 20'000'000;
 
 SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
     constexpr auto k_example = "write {number: 2000, diameter: [0.2 mm, 5 mm]}";
@@ -234,7 +234,7 @@ SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
     SnowDesc snow;
     snow.where = value.location();
     snow.number = map.require("number", k_example).positive("give the particles per m^3");
-    read_diameters(map.require("diameter", k_example), k_least_diameter, k_greatest_diameter,
+    read_diameters(map.require("diameter", k_example), k_min_diameter, k_max_diameter,
                    snow.least, snow.greatest);
     if (const auto entry = map.find("exponent"))
         snow.exponent = entry->within(0, 10, "give Junge's exponent, of numbers per diameter: 4");
@@ -261,7 +261,7 @@ SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
         snow.in_ground_truth = entry->choice(k_choices);
     }
     if (const auto entry = map.find("most"))
-        snow.most = entry->integer(1, k_most_particles,
+        snow.most = entry->integer(1, k_max_particles,
                                    "give how many particles to draw in an image, 1 to 20000000");
     return snow;
 }

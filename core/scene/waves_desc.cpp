@@ -36,7 +36,7 @@ SineWaveDesc read_sine(const ConfigValue& value) {
 std::vector<SineWaveDesc> read_sines(ConfigMap& map) {
     constexpr auto k_mend = "list its waves, such as [{amplitude: 0.1, wavelength: 3}]";
     // Beyond this the horizontal motion folds the surface over itself, where it has no height.
-    constexpr double k_most_folding = 0.95;
+    constexpr double k_max_folding = 0.95;
     std::vector<SineWaveDesc> waves;
     double folding = 0;
     const ConfigValue list = map.require("waves", k_mend);
@@ -46,18 +46,18 @@ std::vector<SineWaveDesc> read_sines(ConfigMap& map) {
                    waves.back().wavelength;
     }
     // Each is looked at wherever a ray comes near the surface.
-    constexpr std::size_t k_most_waves = 1000;
-    if (waves.size() > k_most_waves)
+    constexpr std::size_t k_max_waves = 1000;
+    if (waves.size() > k_max_waves)
         list.fail(
             fmt::format("has {} waves, and must not have more than {}; leave out the smallest, "
                         "or write a sea of many as type: jonswap",
-                        waves.size(), k_most_waves));
+                        waves.size(), k_max_waves));
     if (waves.empty()) list.fail(fmt::format("has no entry; {}", k_mend));
-    if (folding > k_most_folding)
+    if (folding > k_max_folding)
         list.fail(fmt::format(
             "the sum of steepness 2 pi amplitude / wavelength is {:.3g}, and must not be above {}, "
             "or the surface folds over itself; lower steepness or amplitudes",
-            folding, k_most_folding));
+            folding, k_max_folding));
     return waves;
 }
 

@@ -347,8 +347,8 @@ YamlDraft::YamlDraft(std::string text, std::string origin, ConfigNode tree)
 
 void YamlDraft::become(const ConfigNode& target) {
     // Each round makes at least one node as it is to be; anchors that are handed on take their own.
-    const std::size_t most_rounds = 8 + node_count(source_.tree()) + 2 * node_count(target);
-    for (std::size_t round = 0; round < most_rounds; ++round) {
+    const std::size_t max_rounds = 8 + node_count(source_.tree()) + 2 * node_count(target);
+    for (std::size_t round = 0; round < max_rounds; ++round) {
         NodeRoute start;
         const std::optional<Difference> found = first_difference(source_.tree(), target, start);
         if (!found) return;

@@ -40,13 +40,13 @@ using httplib::Request;
 using httplib::Response;
 
 // Each window that follows the events keeps a thread; the others answer.
-constexpr std::size_t k_threads = 32, k_most_windows = 16;
-constexpr std::size_t k_most_body_bytes = 256 * 1024, k_longest_target = 2000;
+constexpr std::size_t k_threads = 32, k_max_windows = 16;
+constexpr std::size_t k_max_body_bytes = 256 * 1024, k_longest_target = 2000;
 constexpr int k_read_seconds = 2, k_write_seconds = 5;  // without a byte
 constexpr int k_silent_seconds = 60;  // that the kernel keeps a connection before its first byte
 constexpr double k_heartbeat_seconds = 15;
-constexpr int k_most_json_depth = 16;
-constexpr std::int64_t k_most_pixels = 1 << 20;  // along a side
+constexpr int k_max_json_depth = 16;
+constexpr std::int64_t k_max_pixels = 1 << 20;  // along a side
 
 // A parameter of an address, "?min=3"; `otherwise` where there is none.
 std::int64_t integer_parameter(const Request& request, const char* name, std::int64_t otherwise) {
@@ -74,7 +74,7 @@ NumbersRequest numbers_request(const Request& request) {
     if (request.get_param_value("x0").empty()) return wanted;
     const auto pixel = [&](const char* name) {
         const std::int64_t value = integer_parameter(request, name, -1);
-        if (value < 0 || value > k_most_pixels)
+        if (value < 0 || value > k_max_pixels)
             throw UsageError(fmt::format("{}: expected a pixel of the image", name));
         return static_cast<int>(value);
     };
@@ -86,7 +86,7 @@ NumbersRequest numbers_request(const Request& request) {
 Json read_json(const std::string& body) {
     const Json::parser_callback_t is_shallow = [](int depth, Json::parse_event_t /*event*/,
                                                   Json& /*value*/) {
-        if (depth > k_most_json_depth) throw UsageError("the request is nested too deeply");
+        if (depth > k_max_json_depth) throw UsageError("the request is nested too deeply");
         return true;
     };
     try {
@@ -265,7 +265,7 @@ EditServer::Page::Page(EditSession& session, int port, EditAddress where)
     server_.set_keep_alive_timeout(0);  // the first byte is there
     server_.set_read_timeout(k_read_seconds);
     server_.set_write_timeout(k_write_seconds);
-    server_.set_payload_max_length(k_most_body_bytes);
+    server_.set_payload_max_length(k_max_body_bytes);
     server_.set_tcp_nodelay(true);
     server_.set_default_headers({
         {"Content-Security-Policy",
@@ -402,7 +402,7 @@ void EditServer::Page::answer(const Request& request, Response& response) {
 }
 
 void EditServer::Page::send_events(Response& response) {
-    if (++windows_ > k_most_windows) {
+    if (++windows_ > k_max_windows) {
         --windows_;
         return refuse(response, 503, "too many windows; close one");
     }

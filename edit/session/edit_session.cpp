@@ -30,14 +30,14 @@ namespace {
 
 // Every event can be fetched again as part of the state: a window that falls further behind than
 // this misses nothing that lasts.
-constexpr std::size_t k_most_events = 256;
+constexpr std::size_t k_max_events = 256;
 
 }  // namespace
 
 void EventLog::publish(std::string name, std::string data) {
     const std::lock_guard lock(mutex_);
     events_.push_back({++last_, std::move(name), std::move(data)});
-    if (events_.size() > k_most_events) events_.pop_front();
+    if (events_.size() > k_max_events) events_.pop_front();
     changed_.notify_all();
 }
 
@@ -103,7 +103,7 @@ void FileWatch::run() const {
 namespace {
 
 constexpr std::chrono::milliseconds k_progress_interval{100};
-constexpr std::size_t k_most_changes = 100;
+constexpr std::size_t k_max_changes = 100;
 
 // A message about a scene file as {"message", "line", "column"}, the last two null where it does
 // not say "scene.yaml:14:7: ...".
@@ -273,8 +273,8 @@ void EditSession::edit(const Json& request) {
     const Json revision = request.value("revision", Json());
     if (!revision.is_number_integer()) throw UsageError("revision: expected that of the state");
     const Json changes = request.value("changes", Json());
-    if (!changes.is_array() || changes.empty() || changes.size() > k_most_changes)
-        throw UsageError(fmt::format("changes: expected a list of 1 to {}", k_most_changes));
+    if (!changes.is_array() || changes.empty() || changes.size() > k_max_changes)
+        throw UsageError(fmt::format("changes: expected a list of 1 to {}", k_max_changes));
     const std::string label = optional_text_member(request, "label"),
                       group = optional_text_member(request, "group");
 

@@ -18,7 +18,7 @@ namespace {
 
 // The first picture while a lamp is dragged, and the last, have so many pixels: the latter is more
 // than a page shows.
-constexpr double k_small_pixels = 160 * 90, k_most_pixels = 1920 * 1200;
+constexpr double k_small_pixels = 160 * 90, k_max_pixels = 1920 * 1200;
 constexpr double k_draft_width = 480, k_draft_height = 270;
 
 /// Layers that are sent if the picture has them.
@@ -150,7 +150,7 @@ std::string_view name_of(PictureQuality quality) {
 
 std::pair<int, int> picture_size(PictureQuality quality, int width, int height) {
     const double pixels = static_cast<double>(width) * height;
-    double scale = std::min(1.0, std::sqrt(k_most_pixels / pixels));
+    double scale = std::min(1.0, std::sqrt(k_max_pixels / pixels));
     if (quality <= PictureQuality::small)
         scale = std::min(scale, std::sqrt(k_small_pixels / pixels));
     if (quality == PictureQuality::draft)

@@ -80,7 +80,7 @@ SuggestRequest suggest_request(const Json& request, const ImageScene& scene) {
     wanted.objective = objective_member(request);
     wanted.aim = flag_member(request, "aim", false) ? SuggestRequest::Aim::target
                                                     : SuggestRequest::Aim::keep;
-    wanted.least_light = number_member(request, "least_light", wanted.least_light);
+    wanted.min_light = number_member(request, "least_light", wanted.min_light);
     const double samples = number_member(request, "samples", static_cast<double>(wanted.samples));
     if (!(samples >= 12 && samples <= 10000)) throw UsageError("samples: expected 12 to 10000");
     wanted.samples = static_cast<std::size_t>(samples);
@@ -101,7 +101,7 @@ Json numbers_json(const PictureNumbers& numbers) {
                     {"percentile5", number_json(e->percentile5)},
                     {"median", number_json(e->median)},
                     {"percentile95", number_json(e->percentile95)},
-                    {"least_to_mean", number_json(e->least_to_mean)},
+                    {"least_to_mean", number_json(e->min_to_mean)},
                     {"percentile5_to_mean", number_json(e->percentile5_to_mean)},
                     {"pixels", e->pixels}};
     return {{"signal", number_json(numbers.signal)},

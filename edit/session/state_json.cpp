@@ -386,7 +386,7 @@ Json lamp_spectrum_names_json() {
 
 // A folder that is deeper, or has more of them, is not one of lamps' files.
 constexpr int k_folder_depth = 2;
-constexpr std::size_t k_most_files = 200;
+constexpr std::size_t k_max_files = 200;
 
 Json port_values_json(const FlatPortDesc& port) {
     return {{"type", "flat"},
@@ -547,7 +547,7 @@ Json ies_files_json(const SceneDesc& desc) {
     if (folder.empty()) folder = ".";
     for (auto at = fs::recursive_directory_iterator(
              folder, fs::directory_options::skip_permission_denied, error);
-         !error && at != fs::recursive_directory_iterator() && names.size() < k_most_files;
+         !error && at != fs::recursive_directory_iterator() && names.size() < k_max_files;
          at.increment(error)) {
         if (at.depth() >= k_folder_depth) at.disable_recursion_pending();
         const std::string ending = at->path().extension().string();

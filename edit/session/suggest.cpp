@@ -134,7 +134,7 @@ class Search {
                 probe_.lamp_on_target(scene_, moved_partner(lamp), request_.distance);
         SuggestPoint result = point(lamp.position);
         result.allowed =
-            result.numbers.irradiance >= request_.least_light * found_.before.numbers.irradiance;
+            result.numbers.irradiance >= request_.min_light * found_.before.numbers.irradiance;
         ++found_.tried;
         return result;
     }
@@ -227,7 +227,7 @@ void check_suggest_request(const SuggestRequest& request, const std::vector<Lamp
     check(request.distance > 0 && std::isfinite(request.distance),
           "the target's distance must be greater than 0");
     check(request.samples >= 12 && request.samples <= 10000, "samples must be from 12 to 10000");
-    check(request.least_light >= 0 && std::isfinite(request.least_light),
+    check(request.min_light >= 0 && std::isfinite(request.min_light),
           "the least light must not be negative");
 }
 

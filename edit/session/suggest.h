@@ -31,7 +31,7 @@ struct SuggestRequest {
     Aim aim = Aim::keep;
     /// Positions whose target has less than this share of the light that falls on it now are left
     /// out; 0: none.
-    double least_light = 0;
+    double min_light = 0;
     /// The most positions that are tried, 12..10000: two thirds of them on a grid, the rest about
     /// the best.
     std::size_t samples = 150;
@@ -42,7 +42,7 @@ struct SuggestPoint {
     Point3 position;   // of the lamp, in its frame [m]
     double value = 0;  // the objective
     TargetNumbers numbers;
-    bool allowed = true;  // by SuggestRequest::least_light
+    bool allowed = true;  // by SuggestRequest::min_light
 };
 
 /// What was found.

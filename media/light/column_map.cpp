@@ -412,7 +412,7 @@ std::uint64_t ColumnMap::rays_traced() const {
 
 namespace {
 
-constexpr int k_most_texels = 1 << 14;  // along an edge
+constexpr int k_max_texels = 1 << 14;  // along an edge
 
 }  // namespace
 
@@ -441,7 +441,7 @@ SunColumnMap::SunColumnMap(const ConcentrationField& of, const Sunlight& sun, do
     const double coarsening = std::max(
         {1.0, std::cbrt(samples * static_cast<double>(constituents_ * sizeof(float)) / budget),
          std::sqrt(rays * ColumnFace::k_bytes_per_texel / budget),
-         std::max(most.u - least.u, most.v - least.v) / (fine * k_most_texels)});
+         std::max(most.u - least.u, most.v - least.v) / (fine * k_max_texels)});
     texel_ = coarsening * fine;
     // The map has a border of one texel for interpolation.
     first_ = {least.u - texel_, least.v - texel_, least.depth};

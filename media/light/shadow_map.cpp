@@ -350,10 +350,10 @@ constexpr double k_sun_edge_width = 3e-5;
 // plane has one edge on a ray, which is found whatever this number.
 constexpr int k_open_pieces = 16;
 
-constexpr int k_most_squares = 4;
+constexpr int k_max_squares = 4;
 constexpr double k_narrower = 4;
 // Half the width of the smallest square, at most twice that [m].
-constexpr double k_least_half = 4;
+constexpr double k_min_half = 4;
 // A square follows the camera in steps of this fraction of its half width.
 constexpr double k_square_step = 0.25;
 
@@ -388,7 +388,7 @@ std::vector<LightSquare> SunShadowMap::squares_around(const Point3& centre, doub
     all.half *= 1 + 1e-3;  // with what a rounding leaves outside
     std::vector<LightSquare> squares{all};
     for (double half = all.half / k_narrower;
-         half >= k_least_half && squares.size() < k_most_squares; half /= k_narrower)
+         half >= k_min_half && squares.size() < k_max_squares; half /= k_narrower)
         squares.push_back(around_centre(half));
     std::reverse(squares.begin(), squares.end());
     return squares;

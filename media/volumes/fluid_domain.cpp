@@ -108,7 +108,7 @@ std::vector<std::filesystem::path> files_named_by_volume(const std::filesystem::
 
 namespace {
 
-constexpr std::size_t k_most_neighbours = 8;
+constexpr std::size_t k_max_neighbours = 8;
 
 const GridSummary* grid_with_resolution(const VdbHeader& header) {
     const auto it = std::ranges::find_if(header.grids, [](const GridSummary& grid) {
@@ -129,12 +129,12 @@ std::filesystem::path sequence_of(const std::filesystem::path& file) {
                                  file.extension().string());
 }
 
-/// Up to k_most_neighbours files, from the first to the last.
+/// Up to k_max_neighbours files, from the first to the last.
 std::vector<std::filesystem::path> neighbours_of(const std::filesystem::path& file) {
     const std::filesystem::path sequence = sequence_of(file);
     if (sequence.empty()) return {};
     const std::vector<int> frames = frames_found(sequence);
-    const std::size_t count = std::min(frames.size(), k_most_neighbours);
+    const std::size_t count = std::min(frames.size(), k_max_neighbours);
     std::vector<std::filesystem::path> files;
     for (std::size_t n = 0; n < count; ++n)
         files.push_back(file_of_frame(
@@ -156,8 +156,8 @@ std::optional<FluidDomain> domain_of(const FluidConfig& config, const GridSummar
     domain.is_adaptive = config.resolution != config.domain;
     domain.longest_side = *grid.voxel_edge * std::ranges::max(*grid.base_resolution);
     if (!(domain.longest_side > 0) || !std::isfinite(domain.longest_side)) return std::nullopt;
-    domain.most_voxels = finer * std::ranges::max(config.domain);
-    domain.voxel = Vector3(domain.largest_voxel());
+    domain.max_voxels = finer * std::ranges::max(config.domain);
+    domain.voxel = Vector3(domain.max_voxel());
     domain.first =
         static_cast<double>(finer) * Vector3(config.first[0], config.first[1], config.first[2]);
     // The solver knows the object's own scale, but not that of its parents, which the box has.
@@ -207,7 +207,7 @@ std::string FluidDomain::description() const {
         "m, the domain's longest side, divided by its Resolution Divisions (at least {2}, so "
         "voxel_size: {3:.4g} or less), or bake without that checkbox, as the place in the domain "
         "is lost, too",
-        k_cause, longest_side, most_voxels, largest_voxel());
+        k_cause, longest_side, max_voxels, max_voxel());
 }
 
 std::optional<FluidDomain> find_fluid_domain(const VdbHeader& header) {
@@ -220,8 +220,8 @@ std::optional<FluidDomain> find_fluid_domain(const VdbHeader& header) {
     }
     FluidDomain domain;
     domain.is_adaptive = true;
-    domain.most_voxels = std::ranges::max(*grid->base_resolution);
-    domain.longest_side = *grid->voxel_edge * domain.most_voxels;
+    domain.max_voxels = std::ranges::max(*grid->base_resolution);
+    domain.longest_side = *grid->voxel_edge * domain.max_voxels;
     bool differs = false;
     for (const std::filesystem::path& file : neighbours_of(header.file)) {
         VdbHeader other;
@@ -233,7 +233,7 @@ std::optional<FluidDomain> find_fluid_domain(const VdbHeader& header) {
         const GridSummary* const its = grid_with_resolution(other);
         if (its == nullptr || its->name != grid->name) continue;
         differs = differs || its->base_resolution != grid->base_resolution;
-        domain.most_voxels = std::max(domain.most_voxels, std::ranges::max(*its->base_resolution));
+        domain.max_voxels = std::max(domain.max_voxels, std::ranges::max(*its->base_resolution));
     }
     if (!differs || !(domain.longest_side > 0) || !std::isfinite(domain.longest_side))
         return std::nullopt;

@@ -51,13 +51,13 @@ std::optional<double> fluid_frame_rate(const std::filesystem::path& data_file);
 struct FluidDomain {
     bool is_adaptive = false;
     double longest_side = 0;       // of the whole domain [m]
-    int most_voxels = 0;           // of any frame looked at: it has at least as many along it
+    int max_voxels = 0;           // of any frame looked at: it has at least as many along it
     std::optional<Vector3> voxel;  // the true edges [m], if they are known
     Vector3 first{0};              // voxel of the domain at which the grid begins; 0 if not known
     std::optional<Affine> blender_from_domain;  // as in FluidConfig
 
     /// The voxel size can be no larger [m].
-    double largest_voxel() const { return longest_side / most_voxels; }
+    double max_voxel() const { return longest_side / max_voxels; }
     /// What an adaptive domain is and what to do, to follow "...: ".
     std::string description() const;
 };

@@ -18,13 +18,13 @@ void initialize_openvdb() {
 
 namespace {
 
-constexpr int k_largest_index = 1 << 30;
+constexpr int k_max_index = 1 << 30;
 
 void append_brick(const openvdb::FloatGrid& grid, std::vector<NanoGrid>& bricks) {
     openvdb::CoordBBox box;
     if (!grid.baseTree().evalActiveVoxelBoundingBox(box)) return;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        if (box.min()[axis] <= -k_largest_index || box.max()[axis] >= k_largest_index)
+        if (box.min()[axis] <= -k_max_index || box.max()[axis] >= k_max_index)
             throw std::range_error("it has voxels more than 2^30 from its origin");
     nanovdb::OpenToNanoVDB<float, nanovdb::Fp16> converter;
     converter.setStats(nanovdb::StatsMode::Disable);

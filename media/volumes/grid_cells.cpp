@@ -160,7 +160,7 @@ void LineIntegral::find_pieces(const nanovdb::Coord& low, double begin, double e
     }
     inside_count_ = face_count_ = 0;
     knots_[0] = begin;
-    for (std::size_t i = 0; i < k_most_pieces; ++i) {
+    for (std::size_t i = 0; i < k_max_pieces; ++i) {
         const double exit = std::max(begin, std::min({next.x, next.y, next.z, end}));
         cells_[i] = cell;
         knots_[i + 1] = exit;

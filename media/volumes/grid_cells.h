@@ -192,7 +192,7 @@ class LineIntegral {
 
   private:
     // A line meets at most this many of a block's cells.
-    static constexpr int k_most_pieces = 3 * CellReader::k_edge;
+    static constexpr int k_max_pieces = 3 * CellReader::k_edge;
 
     void find_pieces(const nanovdb::Coord& low, double begin, double end);
     double over_piece(const CellCorners& corners, std::size_t i) const;
@@ -204,10 +204,10 @@ class LineIntegral {
     Point3 origin_;        // of the line, counted from the block's first cell
     // The pieces of the block's last line: cells, counted from its first, with a hexadecimal digit
     // each for x, y and z, and where they begin and end.
-    std::array<unsigned, k_most_pieces> cells_;
-    std::array<double, k_most_pieces + 1> knots_;
+    std::array<unsigned, k_max_pieces> cells_;
+    std::array<double, k_max_pieces + 1> knots_;
     // The indices of pieces in cells with all corners in the block, and of pieces in other cells.
-    std::array<std::uint8_t, k_most_pieces + 1> inside_, at_faces_;
+    std::array<std::uint8_t, k_max_pieces + 1> inside_, at_faces_;
     std::size_t inside_count_ = 0, face_count_ = 0;
 };
 

@@ -97,7 +97,7 @@ class ProfileRefinement {
     std::vector<double> middles_, values_;  // their midpoints, and the concentrations there
     std::vector<double> error_;
     ConcentrationProfile before_;
-    std::vector<double> least_before_;
+    std::vector<double> min_before_;
 };
 
 void ProfileRefinement::run(const DepthTolerance& tolerance, const Sample& sample,
@@ -121,7 +121,7 @@ void ProfileRefinement::run(const DepthTolerance& tolerance, const Sample& sampl
 void ProfileRefinement::merge(const DepthTolerance& tolerance, std::vector<double>& least,
                               ConcentrationProfile& profile) {
     std::swap(profile, before_);
-    std::swap(least, least_before_);
+    std::swap(least, min_before_);
     std::swap(open_, open_before_);
     const auto count = static_cast<std::size_t>(before_.constituent_count);
     find_refused(tolerance);
@@ -138,17 +138,17 @@ void ProfileRefinement::merge(const DepthTolerance& tolerance, std::vector<doubl
     };
     for (std::size_t i = 0; i < open_before_.size(); ++i) {
         add_knot(before_.s[i], &before_.concentration[i * count]);
-        least.push_back(least_before_[i]);
+        least.push_back(min_before_[i]);
         open_.push_back(0);
         if (open_before_[i] == 0) continue;
         const double half = middles_[middle] - before_.s[i];
         // refused_[i + 1] is the interval's own.
         const bool refused = refused_[i] != 0 || refused_[i + 1] != 0 || refused_[i + 2] != 0;
-        const bool split = refused && half > k_splittable * least_before_[i];
+        const bool split = refused && half > k_splittable * min_before_[i];
         open_.back() = split ? 1 : 0;
         add_knot(middles_[middle], &values_[middle * count]);
         ++middle;
-        least.push_back(least_before_[i]);
+        least.push_back(min_before_[i]);
         open_.push_back(split ? 1 : 0);
     }
     add_knot(before_.s.back(), &before_.concentration[open_before_.size() * count]);

@@ -21,8 +21,8 @@ namespace {
 
 // The largest value of a grid, and the largest concentration that it may stand for [ppm, or units
 // of its own coefficients].
-constexpr double k_largest_value = 1e30, k_largest_concentration = 1e12;
-constexpr double k_smallest_voxel = 1e-9;  // m
+constexpr double k_max_value = 1e30, k_max_concentration = 1e12;
+constexpr double k_min_voxel = 1e-9;  // m
 
 /// Integrals along the world's axes through the centre of `bounds`.
 std::array<double, 3> columns_through_middle(const GridVolume& volume) {
@@ -66,24 +66,24 @@ VolumeReport report_on(const VolumeDesc& desc, const LoadedGrid& loaded, const G
 void check_limits(const VolumeReport& report, const VolumeDesc& desc,
                   const GridMappingDesc& mapping) {
     for (int axis = 0; axis < 3; ++axis)
-        if (!report.bounds.empty() && !(report.bounds.min[axis] >= -k_largest_coordinate &&
-                                        report.bounds.max[axis] <= k_largest_coordinate))
+        if (!report.bounds.empty() && !(report.bounds.min[axis] >= -k_max_coordinate &&
+                                        report.bounds.max[axis] <= k_max_coordinate))
             throw InputError(fmt::format("{}: grid '{}' extends beyond {:g} m; check its transform",
-                                         desc.where, printable(report.grid), k_largest_coordinate));
+                                         desc.where, printable(report.grid), k_max_coordinate));
     const Vector3& voxel = report.metres_per_voxel;
-    if (!(std::min({voxel.x, voxel.y, voxel.z}) >= k_smallest_voxel))
+    if (!(std::min({voxel.x, voxel.y, voxel.z}) >= k_min_voxel))
         throw InputError(
             fmt::format("{}: grid '{}' has voxels of {:g} x {:g} x {:g} m; scale it to "
                         "metres by its transform",
                         desc.where, printable(report.grid), voxel.x, voxel.y, voxel.z));
     double largest = 0;
     for (const ConstituentReport& part : report.constituents) largest = std::max(largest, part.max);
-    if (!(report.statistics.max <= k_largest_value && largest <= k_largest_concentration))
+    if (!(report.statistics.max <= k_max_value && largest <= k_max_concentration))
         throw InputError(fmt::format(
             "{}: the largest value of grid '{}', {:g}, makes a concentration of {:g}: over {:g}, "
             "or values over {:g}, are no water; check the file (uwvdb info) and the mapping",
             mapping.where, printable(report.grid), report.statistics.max, largest,
-            k_largest_concentration, k_largest_value));
+            k_max_concentration, k_max_value));
 }
 
 /// What takes lengths in a grid's file to those in the world.
@@ -250,7 +250,7 @@ void VolumeSequenceCheck::take(const VolumeDesc& frame) {
 
 namespace {
 
-constexpr double k_most_depth = 4;
+constexpr double k_max_depth = 4;
 
 /// The optical depth of the longest edge of a grid's voxels where it is densest, in the band that
 /// it attenuates most.
@@ -269,7 +269,7 @@ double voxel_depth(const VolumeReport& report, const Medium& medium) {
 
 std::optional<std::string> coarse_voxel_warning(const VolumeReport& report, const Medium& medium) {
     const double depth = voxel_depth(report, medium);
-    if (!(depth > k_most_depth)) return std::nullopt;
+    if (!(depth > k_max_depth)) return std::nullopt;
     return fmt::format(
         "{}: grid '{}': its densest voxels are {:.2g} optical depths across: the light on the "
         "outside of such clouds may be 2 to 10 % off; give a finer grid or fewer particles, or "

@@ -170,9 +170,9 @@ GridSummary read_nano_grid(ByteReader& in, std::uint16_t codec) {
     const auto fits = [&](std::uint64_t bytes) {
         return bytes <= static_cast<std::uint64_t>(in.size());
     };
-    constexpr std::uint64_t k_most_packing = 4096;  // no codec compresses better than that
+    constexpr std::uint64_t k_max_packing = 4096;  // no codec compresses better than that
     if (!fits(metadata.stored_bytes) ||
-        metadata.grid_bytes / k_most_packing > metadata.stored_bytes)
+        metadata.grid_bytes / k_max_packing > metadata.stored_bytes)
         in.fail("is truncated or damaged; copy or export it again");
     if (codec == 0 && metadata.grid_bytes != metadata.stored_bytes) in.fail_damaged();
     GridSummary grid;

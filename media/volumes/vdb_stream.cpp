@@ -273,7 +273,7 @@ std::size_t bytes_of_leaf(const openvdb::GridBase& grid) {
 }
 
 /// What slabs hold at most, if `total` bytes are cut into slabs of about `slab_bytes`.
-std::size_t largest_slab(std::size_t total, std::size_t slab_bytes) {
+std::size_t max_slab(std::size_t total, std::size_t slab_bytes) {
     return std::min(total, std::max(slab_bytes, total / 8));
 }
 
@@ -284,7 +284,7 @@ void check_memory(const openvdb::GridBase& grid, std::size_t slab_bytes,
     // A voxel takes 16 bits in what is kept, and a slab is there twice while it is converted.
     constexpr std::size_t k_kept_bytes_per_leaf = 2 * 512;
     require_memory(static_cast<double>(leaves * k_kept_bytes_per_leaf) +
-                       2 * static_cast<double>(largest_slab(total, slab_bytes)),
+                       2 * static_cast<double>(max_slab(total, slab_bytes)),
                    prefix + "it needs", "resample it to larger voxels");
 }
 
@@ -294,7 +294,7 @@ std::vector<openvdb::CoordBBox> cut_into_slabs(const openvdb::GridBase& grid,
     const std::size_t leaf_bytes = bytes_of_leaf(grid);
     const std::size_t total = grid.constBaseTree().leafCount() * leaf_bytes;
     if (total <= slab_bytes) return {};
-    slab_bytes = largest_slab(total, slab_bytes);
+    slab_bytes = max_slab(total, slab_bytes);
 
     openvdb::CoordBBox box;
     for_each_leaf(grid, [&](const openvdb::Coord& origin) { box.expand(origin); });

@@ -18,7 +18,7 @@ namespace uw {
 namespace {
 
 constexpr std::string_view k_depth = "depth_m";
-constexpr double k_most_depth = 1e4, k_most_value = 1e12;
+constexpr double k_max_depth = 1e4, k_max_value = 1e12;
 
 /// The table's columns by name; every one of them has to be taken.
 class ProfileColumns {
@@ -40,7 +40,7 @@ class ProfileColumns {
         is_taken_[static_cast<std::size_t>(at)] = true;
         std::vector<double> values = table_.numbers(name);
         for (const double value : values)
-            if (!(value >= 0 && value <= k_most_value))
+            if (!(value >= 0 && value <= k_max_value))
                 fail(fmt::format("column {} has the value {:g}; give 0 or more", name, value));
         return values;
     }
@@ -225,9 +225,9 @@ DepthProfile read_depth_profile(const WaterDesc& water) {
     profile.depths = columns.take(k_depth);
     if (profile.depths.empty()) columns.fail("has no rows; give at least one depth");
     for (std::size_t i = 0; i < profile.depths.size(); ++i) {
-        if (!(profile.depths[i] <= k_most_depth))
+        if (!(profile.depths[i] <= k_max_depth))
             columns.fail(
-                fmt::format("the depth {:g} m is beyond {:g} m", profile.depths[i], k_most_depth));
+                fmt::format("the depth {:g} m is beyond {:g} m", profile.depths[i], k_max_depth));
         if (i > 0 && !(profile.depths[i] > profile.depths[i - 1]))
             columns.fail(fmt::format("depths do not ascend: {:g} m follows {:g} m; sort the rows",
                                      profile.depths[i], profile.depths[i - 1]));

@@ -19,7 +19,7 @@ namespace uw {
 
 namespace {
 
-constexpr double k_smallest_angle = TabulatedPhase::k_smallest_angle;
+constexpr double k_min_angle = TabulatedPhase::k_min_angle;
 
 /// p = (1 - g^2) / (4 pi (1 + g^2 - 2 g cos psi)^1.5) (Henyey and Greenstein 1941), normalised
 /// exactly.
@@ -103,7 +103,7 @@ double horner(std::span<const double> c, double x) {
 ///     nu = (3-mu)/2,  d = 4 sin^2(psi/2) / (3 (n-1)^2),  d180 = d at psi = pi.
 ///
 /// The first term is 0/0 at d = 1; near it the quotients are evaluated by their binomial series. p
-/// is unbounded as psi approaches 0. Below `k_smallest_angle` it goes on linear in sin^2(psi/2),
+/// is unbounded as psi approaches 0. Below `k_min_angle` it goes on linear in sin^2(psi/2),
 /// without a step and with the integral over that cone (known in closed form), so that it is finite
 /// everywhere and the whole integral is still 1.
 class FournierForand final : public PhaseFunction {
@@ -129,7 +129,7 @@ class FournierForand final : public PhaseFunction {
     double n_, mu_, nu_;
     double delta_180_;
     double back_;  // factor of (3 cos^2 psi - 1)
-    // p at sin^2(psi/2) = s2 inside k_smallest_angle is core_ - core_slope_ s2.
+    // p at sin^2(psi/2) = s2 inside k_min_angle is core_ - core_slope_ s2.
     double core_, core_slope_;
     std::array<double, k_series_terms> series_a_{}, series_b_{};
 };
@@ -150,9 +150,9 @@ FournierForand::FournierForand(double n, double mu)
     binomials_from_2(nu_ + 1, series_b_);
     back_ = -power_quotient(delta_180_, nu_) / (16 * std::numbers::pi * std::pow(delta_180_, nu_));
 
-    // Fraction scattered below k_smallest_angle (Mobley, from Fournier and Jonasz 1999), over the
+    // Fraction scattered below k_min_angle (Mobley, from Fournier and Jonasz 1999), over the
     // cone's solid angle 4 pi sin^2(psi/2): the mean of p there, halfway between both ends.
-    const double s = std::sin(0.5 * k_smallest_angle);
+    const double s = std::sin(0.5 * k_min_angle);
     const double s2 = s * s;
     const double delta = delta_180_ * s2;
     const double fraction =
@@ -184,13 +184,13 @@ double FournierForand::value(double sin2_half) const {
 void FournierForand::evaluate(std::span<const double> psi, std::span<double> p) const {
     for (std::size_t i = 0; i < psi.size(); ++i) {
         const double s = std::sin(0.5 * psi[i]);
-        p[i] = psi[i] < k_smallest_angle ? core_ - core_slope_ * s * s : value(s * s);
+        p[i] = psi[i] < k_min_angle ? core_ - core_slope_ * s * s : value(s * s);
     }
 }
 
 std::vector<double> FournierForand::breakpoints() const {
     std::vector<double> angles;
-    for (double angle = k_smallest_angle; angle < 0.5 * std::numbers::pi; angle *= 4)
+    for (double angle = k_min_angle; angle < 0.5 * std::numbers::pi; angle *= 4)
         angles.push_back(angle);
     return angles;
 }
@@ -376,7 +376,7 @@ struct Knots {
 
 /// Adds knots from 0 up to, but excluding, the first angle of the table.
 void add_low_end(Knots& knots, double psi, double p, double exponent) {
-    const double smallest = k_smallest_angle;
+    const double smallest = k_min_angle;
     const auto continued = [&](double angle) { return p * std::pow(angle / psi, exponent); };
     if (psi <= smallest || p == 0) {
         knots.add(0, p, Law::linear);
@@ -472,7 +472,7 @@ KopelevichLarge::KopelevichLarge()
 namespace {
 
 /// A phase table is a few kilobytes; anything larger is some other file.
-constexpr std::size_t k_largest_table_file = std::size_t{4} << 20;
+constexpr std::size_t k_max_table_file = std::size_t{4} << 20;
 
 std::shared_ptr<const PhaseFunction> table_phase(const TabulatedPhaseDesc& desc,
                                                  const SourceLocation& where,
@@ -480,7 +480,7 @@ std::shared_ptr<const PhaseFunction> table_phase(const TabulatedPhaseDesc& desc,
     const std::string name = desc.file.filename().string();
     const std::string text = read_text_file(
         desc.file, fmt::format("{}: {}", where, printable(desc.file.string(), 300)),
-        k_largest_table_file, "phase function table (CSV with columns angle_deg,phase)");
+        k_max_table_file, "phase function table (CSV with columns angle_deg,phase)");
     auto phase =
         std::make_shared<TabulatedPhase>(CsvTable(text, name).curve("angle_deg", "phase"), name);
     // Published tables integrate to 1 within a few per cent.

@@ -74,12 +74,12 @@ class PiecewiseFunction {
 /// Between angles: ln p linear in ln psi; p linear in psi where an end is 0 (an angle of 0, or a
 /// value of 0). Below the first angle, if it is not 0, the power law of the first segment is
 /// extrapolated (its exponent clamped to [-1.9, 0], so that the integral stays finite) down to
-/// `k_smallest_angle`, and held constant from there to 0. Beyond the last angle its value is held.
+/// `k_min_angle`, and held constant from there to 0. Beyond the last angle its value is held.
 class TabulatedPhase : public PhaseFunction {
   public:
     /// 1e-6 rad (0.2 arc seconds): far below any pixel, and below the diffraction angle of a
     /// particle half a metre in size, so that no real water has a sharper peak.
-    static constexpr double k_smallest_angle = 1e-6;
+    static constexpr double k_min_angle = 1e-6;
 
     /// `table`: angles in degrees, in [0, 180], and values >= 0 up to a common factor.
     /// `low_exponent`, in [-1.9, 0], overrides the one derived from the first segment. Fewer than

@@ -65,8 +65,8 @@ class VolumeBySize {
     };
     LeftOut left_out() const {
         constexpr double k_all = std::numeric_limits<double>::infinity();
-        return {volume_share(-k_all, std::log(k_least_diameter)),
-                volume_share(std::log(k_greatest_diameter), k_all)};
+        return {volume_share(-k_all, std::log(k_min_diameter)),
+                volume_share(std::log(k_max_diameter), k_all)};
     }
 
     /// All that the distribution depends on.
@@ -95,9 +95,9 @@ class VolumeBySize {
         };
         const double highest =
             std::max(3 * deviation, std::min(6 * deviation, place_of(k_wavelength)));
-        const double last = std::min(highest + k_reach, place_of(k_greatest_diameter));
+        const double last = std::min(highest + k_reach, place_of(k_max_diameter));
         const double first =
-            std::max(std::min(2 * deviation, last) - k_reach, place_of(k_least_diameter));
+            std::max(std::min(2 * deviation, last) - k_reach, place_of(k_min_diameter));
         sizes_.least = sizes_.median * std::exp(deviation * first);
         sizes_.greatest = sizes_.median * std::exp(deviation * last);
     }
@@ -176,13 +176,13 @@ std::complex<double> index_at(const ParticleIndexDesc& index, double wavelength_
     return value;
 }
 
-/// Scattering angles [rad], fine where spheres up to `greatest_x` have their forward peak.
-std::vector<double> scattering_angles(double greatest_x) {
+/// Scattering angles [rad], fine where spheres up to `max_x` have their forward peak.
+std::vector<double> scattering_angles(double max_x) {
     std::vector<double> angles{0};
     constexpr int k_per_octave = 32;
     constexpr double k_widest = 30 * std::numbers::pi / 180;
     constexpr int k_rest = 200;  // steps of 0.75 degrees
-    for (double psi = 0.3 / std::max(greatest_x, 1.0); psi < k_widest;
+    for (double psi = 0.3 / std::max(max_x, 1.0); psi < k_widest;
          psi *= std::exp2(1.0 / k_per_octave))
         angles.push_back(psi);
     for (int i = 0; i < k_rest; ++i)

@@ -26,8 +26,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t k_most_files = 2000;  // of some 6 kB each
-constexpr std::size_t k_most_bytes = 1 << 20;
+constexpr std::size_t k_max_files = 2000;  // of some 6 kB each
+constexpr std::size_t k_max_bytes = 1 << 20;
 
 std::mutex& folder_mutex() {
     static std::mutex mutex;
@@ -78,7 +78,7 @@ void thin_out(const fs::path& folder) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))
         if (entry.path().extension() == ".mie")
             files.emplace_back(entry.last_write_time(error), entry.path());
-    if (files.size() < k_most_files) return;
+    if (files.size() < k_max_files) return;
     std::ranges::sort(files);
     for (std::size_t i = 0; i < files.size() / 2; ++i) fs::remove(files[i].second, error);
 }
@@ -105,7 +105,7 @@ std::optional<std::vector<double>> kept_results(const std::string& key, std::siz
     const fs::path folder = usable_folder();
     if (folder.empty()) return {};
     std::ifstream file = open_own_file(file_of(folder, key));
-    std::string bytes(k_most_bytes, '\0');
+    std::string bytes(k_max_bytes, '\0');
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<std::size_t>(file.gcount()));
     std::vector<double> results(count);

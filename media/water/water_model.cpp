@@ -30,7 +30,7 @@ struct SpeciesInBand {
 using PhaseSource = std::variant<PhaseFunctionDesc, KopelevichClass, SpeciesInBand>;
 
 /// The most species_work of all species in all bands: some ten minutes of two processors.
-constexpr double k_most_species_work = 2e11;
+constexpr double k_max_species_work = 2e11;
 
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
 class Builder {
@@ -115,7 +115,7 @@ bool same_optics(const GridMappingDesc::Optics& a, const GridMappingDesc::Optics
 }
 
 /// The least of what a profile has [depth * bands + band], by band.
-Spectrum least_by_band(const std::vector<double>& values, std::size_t bands) {
+Spectrum min_by_band(const std::vector<double>& values, std::size_t bands) {
     Spectrum least{};
     for (std::size_t i = 0; i < values.size(); ++i)
         least[i % bands] = i < bands ? values[i] : std::min(least[i % bands], values[i]);
@@ -174,14 +174,14 @@ void Builder::add_uniform() {
         model.warnings = profile_->warnings;
     }
     if (profile_ && !profile_->absorption.empty())
-        uniform.absorption = least_by_band(profile_->absorption, band_count_);
+        uniform.absorption = min_by_band(profile_->absorption, band_count_);
     else
         uniform.absorption = uniform_absorption(water_, preset, model.warnings);
 
     if (water_.scattering) {
         Spectrum& b = scattering(uniform, phase_index(water_.scattering->phase));
         if (profile_ && !profile_->scattering.empty())
-            b = least_by_band(profile_->scattering, band_count_);
+            b = min_by_band(profile_->scattering, band_count_);
         else
             std::ranges::copy(water_.scattering->b, b.begin());
         if (water_.small_ppm.value_or(0) > 0 || water_.large_ppm.value_or(0) > 0)
@@ -229,12 +229,12 @@ void Builder::expect(const std::vector<VolumeDesc>& volumes) {
         expected_ += work;
         if (work > work_of_most) most = i, work_of_most = work;
     }
-    if (expected_ > k_most_species_work)
+    if (expected_ > k_max_species_work)
         throw InputError(fmt::format(
             "{}: to compute the species takes {:.2g} times the work that is allowed, most of it "
             "{}; "
             "give smaller greatest diameters, fewer species or fewer bands",
-            species_[most].where, expected_ / k_most_species_work, species_[most].name));
+            species_[most].where, expected_ / k_max_species_work, species_[most].name));
 }
 
 void Builder::warn_of_held_wavelengths(std::size_t species) {
@@ -392,7 +392,7 @@ bool change_alike(const std::vector<double>& values, const Spectrum& least, std:
 
 void Builder::add_coefficient_curves(const std::vector<double>& values, bool scatters) {
     if (values.empty()) return;
-    const Spectrum least = least_by_band(values, band_count_);
+    const Spectrum least = min_by_band(values, band_count_);
     const auto changes = [&](std::size_t band) {
         for (std::size_t i = band; i < values.size(); i += band_count_)
             if (values[i] > least[band]) return true;
@@ -495,7 +495,7 @@ std::vector<OpticalCoefficients> coefficients_by_depth(const WaterModel& model) 
 
 namespace {
 
-constexpr double k_least_step_ppm = 1e-6;  // beyond rounding
+constexpr double k_min_step_ppm = 1e-6;  // beyond rounding
 
 void refuse_other_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
                         bool is_small) {
@@ -528,7 +528,7 @@ void refuse_other_water(const WaterDesc& water, const std::vector<VolumeDesc>& v
 /// How far the coefficients are linear from here.
 double linear_step(const WaterDesc& water, double ppm, double preset_ppm) {
     const bool measured = !water.preset.empty() && !water.absorption;
-    return measured && ppm < preset_ppm - k_least_step_ppm ? preset_ppm - ppm : 1.0;
+    return measured && ppm < preset_ppm - k_min_step_ppm ? preset_ppm - ppm : 1.0;
 }
 
 }  // namespace

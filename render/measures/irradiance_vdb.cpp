@@ -21,7 +21,7 @@ namespace {
 
 constexpr int k_longest_side = 256;
 // The most values in all grids together: 1 GiB here, and as much again in OpenVDB.
-constexpr double k_most_values = 1 << 28;
+constexpr double k_max_values = 1 << 28;
 
 struct Lattice {
     std::array<int, 3> size{};
@@ -64,7 +64,7 @@ Lattice lattice_over(const AssembledScene& scene) {
         for (int axis = 0; axis < 3; ++axis)
             lattice.size[static_cast<std::size_t>(axis)] =
                 static_cast<int>(extent[axis] / lattice.voxel) + 1;
-        if (static_cast<double>(lattice.count()) * grids <= k_most_values) return lattice;
+        if (static_cast<double>(lattice.count()) * grids <= k_max_values) return lattice;
     }
 }
 

@@ -25,7 +25,7 @@ namespace {
 
 constexpr int k_batches = 16;
 // No phase function varies below this tangent of half the angle.
-constexpr double k_least_half_tangent = 0x1p-22;
+constexpr double k_min_half_tangent = 0x1p-22;
 // The share of rays that are drawn evenly.
 constexpr double k_even_share = 0.5;
 // A single direction needs fewer rays than all together.
@@ -86,10 +86,10 @@ std::vector<Beam> beams_at(const AssembledScene& scene, const Point3& x) {
 /// water's phase functions: next to the direction of a sun, light that is scattered once has it,
 /// however steep it is.
 HalfTangentDensity density_around_lamps(const ScatteringTables& tables) {
-    const double octaves = std::log(1 / k_least_half_tangent);
+    const double octaves = std::log(1 / k_min_half_tangent);
     std::vector<double> values;
     for (const double h : HalfTangentDensity::nodes()) {
-        double value = h > 1 ? 0 : 1 / (octaves * std::max(h, k_least_half_tangent));
+        double value = h > 1 ? 0 : 1 / (octaves * std::max(h, k_min_half_tangent));
         for (std::size_t m = 0; m < tables.phase_count(); ++m)
             value +=
                 tables.shares[m] * tables.directions[m].density(h) / tables.directions[m].mass();
@@ -157,9 +157,9 @@ class RadianceEstimate {
 
     /// `with_sky`: and that of the sky, which beams stand for.
     Spectrum operator()(Ray ray, std::uint64_t seed, std::uint32_t index, bool with_sky = false) {
-        constexpr int k_most_mirrors = 8;  // one is all that plane surfaces have
+        constexpr int k_max_mirrors = 8;  // one is all that plane surfaces have
         Spectrum radiance{}, share = per_band(bands_, [](std::size_t) { return 1.0; });
-        for (int mirrors = 0; mirrors < k_most_mirrors; ++mirrors) {
+        for (int mirrors = 0; mirrors < k_max_mirrors; ++mirrors) {
             SurfaceSample sample{ray, {}, 0, 0};
             const bool has_hit = scene_.surfaces->closest_hit(ray, k_far, sample.hit);
             sum_.reset();

@@ -136,12 +136,12 @@ class AlbedoPattern {
     }
 
     void add(std::span<const SurfacePixel> pixels) {
-        constexpr double k_least_contrast = 0.02;  // of a pattern that anyone would call one
+        constexpr double k_min_contrast = 0.02;  // of a pattern that anyone would call one
         std::vector<double> albedos;
         albedos.reserve(pixels.size());
         for (const SurfacePixel& pixel : pixels) albedos.push_back(pixel.albedo);
         const double low = percentile(albedos, 0.25), high = percentile(albedos, 0.75);
-        if (!(high - low > k_least_contrast * (high + low))) return;
+        if (!(high - low > k_min_contrast * (high + low))) return;
         Tile& tile = tiles_.emplace_back();
         for (const SurfacePixel& pixel : pixels) {
             if (pixel.albedo >= high) tile.bright.push_back(pixel.place);
@@ -170,7 +170,7 @@ Evenness evenness_of(std::vector<double> seen) {
     even.median = percentile(seen, 0.5);
     even.percentile95 = percentile(seen, 0.95);
     if (even.mean > 0) {
-        even.least_to_mean = even.least / even.mean;
+        even.min_to_mean = even.least / even.mean;
         even.percentile5_to_mean = even.percentile5 / even.mean;
     }
     return even;
@@ -275,8 +275,8 @@ std::optional<PixelWindow> patterned_part(const PictureLayers& picture, int side
     };
     // For equal surfaces it is 0 but for rounding, which is far below this; no surface that anyone
     // would call patterned varies so little.
-    constexpr double k_least_deviation = 0.01;
-    double most = k_least_deviation * k_least_deviation;
+    constexpr double k_min_deviation = 0.01;
+    double most = k_min_deviation * k_min_deviation;
     std::optional<PixelWindow> best;
     const double count = static_cast<double>(side) * side;
     for (int y = 0; y + side <= height; ++y)

@@ -87,7 +87,7 @@ PictureLayers picture_layers(const Film& film, const LayerPlan& plan);
 struct Evenness {
     double mean = 0, least = 0, greatest = 0;
     double percentile5 = 0, median = 0, percentile95 = 0;
-    double least_to_mean = 0;  // the uniformity U0 of lighting engineers
+    double min_to_mean = 0;  // the uniformity U0 of lighting engineers
     /// percentile5 / mean, which a single dark corner does not decide.
     double percentile5_to_mean = 0;
     std::size_t pixels = 0;

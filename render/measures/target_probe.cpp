@@ -15,7 +15,7 @@
 namespace uw {
 namespace {
 
-constexpr std::size_t k_most_kept = 10000;  // of about 1 KB each
+constexpr std::size_t k_max_kept = 10000;  // of about 1 KB each
 
 /// A camera whose pixels, few as they are, share out the part of the image in the middle. It stands
 /// where the scene's is at the image's moment.
@@ -159,7 +159,7 @@ TargetProbe::TargetProbe(const TargetOptions& options) : options_(options) {
 
 void TargetProbe::enter(const SceneDesc& scene) {
     SceneDesc surrounding = surrounding_of(scene, options_);
-    if (surrounding_ && is_same(*surrounding_, surrounding) && kept_.size() < k_most_kept) return;
+    if (surrounding_ && is_same(*surrounding_, surrounding) && kept_.size() < k_max_kept) return;
     kept_.clear();
     surrounding_ = std::move(surrounding);
 }

@@ -39,7 +39,7 @@ TEST(Fisheye, FollowsTheFormulaOfOpenCv) {
 TEST(Fisheye, RoundTripBeyondTheHemisphere) {
     for (const DistortionDesc& desc : {fisheye(), fisheye(0.05, -0.01, 0.002, -0.0001)}) {
         const Fisheye lens(desc);
-        for (double theta = 0; theta < lens.largest_angle() - 1e-6; theta += 0.05) {
+        for (double theta = 0; theta < lens.max_angle() - 1e-6; theta += 0.05) {
             const Vector3 direction = at_angle(theta, 2 * theta);
             const auto image = lens.image(direction);
             ASSERT_TRUE(image) << theta;
@@ -54,12 +54,12 @@ TEST(Fisheye, RoundTripBeyondTheHemisphere) {
 TEST(Fisheye, EndsAtItsFold) {
     // theta - theta^3 / 3 grows up to theta = 1, where it is 2/3.
     const Fisheye lens(fisheye(-1.0 / 3));
-    EXPECT_NEAR(lens.largest_angle(), 1, 1e-12);
+    EXPECT_NEAR(lens.max_angle(), 1, 1e-12);
     EXPECT_TRUE(lens.direction({0.666, 0}));
     EXPECT_FALSE(lens.direction({0.667, 0}));
     EXPECT_TRUE(lens.image(at_angle(0.999, 1)));
     EXPECT_FALSE(lens.image(at_angle(1.001, 1)));
-    EXPECT_EQ(Fisheye(fisheye()).largest_angle(), pi);
+    EXPECT_EQ(Fisheye(fisheye()).max_angle(), pi);
     EXPECT_FALSE(Fisheye(fisheye()).image({0, 0, -1}));
 }
 

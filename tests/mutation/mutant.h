@@ -10,7 +10,7 @@
 namespace uw {
 
 /// As many as a file of marks holds.
-constexpr int k_most_mutants = 1 << 16;
+constexpr int k_max_mutants = 1 << 16;
 
 /// The mutant that this process runs with: the number in UWVDB_MUTANT, 0 for none.
 inline const int running_mutant = [] {
@@ -24,7 +24,7 @@ inline char* const reached_mutants = []() -> char* {
     const char* path = std::getenv("UWVDB_MUTANTS_REACHED");
     const int file = path ? open(path, O_RDWR | O_CLOEXEC) : -1;
     if (file < 0) return nullptr;
-    void* bytes = mmap(nullptr, k_most_mutants, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
+    void* bytes = mmap(nullptr, k_max_mutants, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     close(file);
     return bytes == MAP_FAILED ? nullptr : static_cast<char*>(bytes);
 }();

@@ -34,20 +34,20 @@ class FineFeatures : public testing::Test {
     static void expect_like_exact(const std::string& scene) {
         const Film mixed = rendered(scene, RenderDesc::Quality::final);
         const Film exact = rendered(scene, RenderDesc::Quality::exact);
-        double squares = 0, all = 0, greatest_difference = 0, greatest = 0;
+        double squares = 0, all = 0, max_difference = 0, greatest = 0;
         for (int y = 0; y < exact.height(); ++y) {
             for (int x = 0; x < exact.width(); ++x) {
                 const double is = static_cast<double>(mixed.pixel(x, y)[1]);
                 const double expected = static_cast<double>(exact.pixel(x, y)[1]);
                 squares += (is - expected) * (is - expected);
                 all += expected * expected;
-                greatest_difference = std::max(greatest_difference, std::abs(is - expected));
+                max_difference = std::max(max_difference, std::abs(is - expected));
                 greatest = std::max(greatest, expected);
             }
         }
         EXPECT_GT(all, 0);
         EXPECT_LT(std::sqrt(squares / all), k_rms) << scene;
-        EXPECT_LT(greatest_difference / greatest, k_worst) << scene;
+        EXPECT_LT(max_difference / greatest, k_worst) << scene;
     }
 
     static std::string scene(const std::string& more) {

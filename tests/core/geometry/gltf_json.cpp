@@ -10,7 +10,7 @@
 namespace uw {
 namespace {
 
-constexpr auto k_least_gltf = R"({"asset":{"version":"2.0"},"extras":7})";
+constexpr auto k_min_gltf = R"({"asset":{"version":"2.0"},"extras":7})";
 
 class GltfJson : public testing::Test {
   protected:
@@ -25,9 +25,9 @@ class GltfJson : public testing::Test {
 };
 
 TEST_F(GltfJson, IsTheTextOrTheFirstChunk) {
-    EXPECT_EQ(load(k_least_gltf).at("extras"), 7);
-    EXPECT_EQ(load(test::glb_bytes(k_least_gltf)).at("extras"), 7);
-    EXPECT_EQ(load(test::glb_bytes(k_least_gltf, "1234")).at("extras"), 7);
+    EXPECT_EQ(load(k_min_gltf).at("extras"), 7);
+    EXPECT_EQ(load(test::glb_bytes(k_min_gltf)).at("extras"), 7);
+    EXPECT_EQ(load(test::glb_bytes(k_min_gltf, "1234")).at("extras"), 7);
 }
 
 TEST_F(GltfJson, OfOtherVersionsIsRefused) {
@@ -35,20 +35,20 @@ TEST_F(GltfJson, OfOtherVersionsIsRefused) {
     expect_refused("[]", "not a glTF file (it has no 'asset')");
     expect_refused(R"({"asset":{}})", "not glTF 2; export it as glTF 2.0");
     expect_refused(R"({"asset":{"version":"1.0"}})", "not glTF 2; export it as glTF 2.0");
-    std::string glb = test::glb_bytes(k_least_gltf);
+    std::string glb = test::glb_bytes(k_min_gltf);
     glb[4] = 1;
     expect_refused(glb, "not a GLB file of version 2; export it as glTF 2.0");
     expect_refused("glTF\x02", "not a GLB file of version 2; export it as glTF 2.0");
 }
 
 TEST_F(GltfJson, ThatIsCutOffIsRefused) {
-    const std::string glb = test::glb_bytes(k_least_gltf);
+    const std::string glb = test::glb_bytes(k_min_gltf);
     expect_refused(glb.substr(0, glb.size() - 1),
                    "the GLB file is truncated; export the mesh again");
     std::string forged = glb;
     forged[15] = '\x7f';  // the chunk's length
     expect_refused(forged, "the GLB file is truncated; export the mesh again");
-    EXPECT_THROW(load(std::string(k_least_gltf).substr(0, 20)), nlohmann::json::exception);
+    EXPECT_THROW(load(std::string(k_min_gltf).substr(0, 20)), nlohmann::json::exception);
 }
 
 TEST_F(GltfJson, MayBeNestedAHundredDeep) {

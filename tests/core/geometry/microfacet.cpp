@@ -111,7 +111,7 @@ TEST(Microfacet, AWhiteMetalReflectsNoMoreThanItGetsAndAlmostAllIfSmooth) {
 TEST(Microfacet, SmootherThanTheLeastIsTheLeast) {
     const Vector3 lamp = at_angle(0.3), camera = at_angle(0.31, pi);
     EXPECT_EQ(microfacet_lobe(k_up, camera, lamp, 0).density,
-              microfacet_lobe(k_up, camera, lamp, k_smallest_roughness).density);
+              microfacet_lobe(k_up, camera, lamp, k_min_roughness).density);
     // Nothing from behind, and no NaN from anywhere.
     EXPECT_EQ(microfacet_lobe(k_up, camera, -lamp, 0.5).density, 0);
     EXPECT_EQ(microfacet_lobe(k_up, camera, -camera, 0.5).density, 0);

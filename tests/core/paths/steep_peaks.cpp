@@ -116,7 +116,7 @@ TEST(SteepPeaks, TablesHoldAllOfTheScattering) {
 // form: chi-square over n bins has the deviation sqrt(2 n), of which 4 are allowed. The smallest
 // angles are those that lose digits if a direction is made of the cosine.
 TEST(SteepPeaks, DirectionsAreDrawnDownToTheSmallestAngles) {
-    constexpr int k_draws = 200000, k_most_bins = 24;
+    constexpr int k_draws = 200000, k_max_bins = 24;
     const Vector3 axis = glm::normalize(Vector3(0.3, -0.8, 0.5));
     for (const PeakedPhase& peaked : peaked_phases()) {
         SCOPED_TRACE(peaked.phase->description());
@@ -125,7 +125,7 @@ TEST(SteepPeaks, DirectionsAreDrawnDownToTheSmallestAngles) {
         std::vector<double> ends;
         for (double psi = 1.01e-6; psi < pi; psi *= 2) ends.push_back(psi);
         ends.push_back(pi);
-        ASSERT_LE(ends.size(), static_cast<std::size_t>(k_most_bins));
+        ASSERT_LE(ends.size(), static_cast<std::size_t>(k_max_bins));
         std::vector<int> counts(ends.size(), 0);
         for (int i = 0; i < k_draws; ++i) {
             PathRandom random(7, static_cast<std::uint32_t>(i));

@@ -349,7 +349,7 @@ TEST_F(PoseFiles, AreRefusedInOneLine) {
 
 TEST_F(PoseFiles, TooManyPosesAreRefusedWithoutReadingThem) {
     std::string text;
-    for (std::size_t i = 0; i <= k_most_poses; ++i) text += std::to_string(i) + " 0 0 0 0 0 0 1\n";
+    for (std::size_t i = 0; i <= k_max_poses; ++i) text += std::to_string(i) + " 0 0 0 0 0 0 1\n";
     expect_refused(PoseFormat::tum, text, "poses:1000001: the file has more than a million");
 }
 

@@ -135,7 +135,7 @@ TEST(Suggest, LeavesOutPlacesOfTooLittleLight) {
     SuggestRequest request = along_x(-3, 0);
     TargetProbe probe;
     const Suggestion free = suggest_position(probe, scene, request);
-    request.least_light = 0.7;
+    request.min_light = 0.7;
     const Suggestion lit = suggest_position(probe, scene, request);
     EXPECT_LT(free.best.numbers.irradiance, 0.7 * free.before.numbers.irradiance);
     EXPECT_TRUE(lit.best.allowed);
@@ -143,7 +143,7 @@ TEST(Suggest, LeavesOutPlacesOfTooLittleLight) {
     for (const SuggestPoint& point : lit.map)
         EXPECT_TRUE(!point.allowed || point.value <= lit.best.value);
     EXPECT_FALSE(lit.map.front().allowed);
-    request.least_light = 1000;
+    request.min_light = 1000;
     EXPECT_FALSE(suggest_position(probe, scene, request).best.allowed);
 }
 
@@ -174,7 +174,7 @@ TEST(Suggest, IsBoundedAndCanBeCancelled) {
     refused([](SuggestRequest& r) { r.to = r.from; });
     refused([](SuggestRequest& r) { r.distance = 0; });
     refused([](SuggestRequest& r) { r.samples = 11; });
-    refused([](SuggestRequest& r) { r.least_light = -1; });
+    refused([](SuggestRequest& r) { r.min_light = -1; });
 }
 
 TEST(MirroredLamp, IsOnTheOtherSideOfTheCameraInItsOwnFrame) {

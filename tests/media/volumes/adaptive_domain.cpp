@@ -55,8 +55,8 @@ TEST_F(AdaptiveDomainTest, IsToldByFramesOfOtherResolution) {
         const auto domain = find(frame);
         ASSERT_TRUE(domain);
         EXPECT_NEAR(domain->longest_side, 2.4, 1e-9);
-        EXPECT_EQ(domain->most_voxels, 40);
-        EXPECT_NEAR(domain->largest_voxel(), 0.06, 1e-9);
+        EXPECT_EQ(domain->max_voxels, 40);
+        EXPECT_NEAR(domain->max_voxel(), 0.06, 1e-9);
         const LoadedVolume volume = load(frame);
         ASSERT_EQ(volume.warnings.size(), 1U);
         EXPECT_NE(volume.warnings[0].find("Adaptive Domain"), std::string::npos);
@@ -176,7 +176,7 @@ TEST_F(AdaptiveDomainTest, BlendersOwnFramesAgreeOnTheDomain) {
         const auto domain = find(desc);
         ASSERT_TRUE(domain) << frame;
         EXPECT_NEAR(domain->longest_side, 48 * 0.05, 1e-6);
-        EXPECT_LE(domain->most_voxels, 48);
+        EXPECT_LE(domain->max_voxels, 48);
         desc.voxel_size = 0.05;
         EXPECT_NEAR(load(desc).reports[0].metres_per_voxel.x, 0.05, 1e-12);
     }

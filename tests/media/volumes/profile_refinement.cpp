@@ -66,7 +66,7 @@ TEST(ProfileRefinement, WithoutToleranceIsTheProfileItself) {
 // The greatest |error| e^-depth of the columns of a sheet of one voxel in faint fog. `column`: of
 // the sheet along its normal. `tilt`: the greatest tangent of rays against it in either direction.
 struct SheetErrors {
-    double greatest = 0, greatest_of_profile = 0;
+    double greatest = 0, max_of_profile = 0;
 };
 SheetErrors errors_at_sheet(double column, double tolerance, double tilt) {
     FieldMaker maker;
@@ -88,7 +88,7 @@ SheetErrors errors_at_sheet(double column, double tolerance, double tilt) {
         field->profile_within(column_tolerance(tolerance), ray, 120, profile);
         errors.greatest = std::max(errors.greatest, weighted());
         field->profile(ray, 120, profile);
-        errors.greatest_of_profile = std::max(errors.greatest_of_profile, weighted());
+        errors.max_of_profile = std::max(errors.max_of_profile, weighted());
     }
     return errors;
 }
@@ -100,7 +100,7 @@ TEST(ProfileRefinement, MissesNoSheetOfOneVoxel) {
             SCOPED_TRACE(testing::Message() << "tilt " << tilt << ", column " << column);
             const SheetErrors errors = errors_at_sheet(column, tolerance, tilt);
             // At the finest, quarters of a voxel, the profile itself is off a little.
-            EXPECT_LT(errors.greatest, tolerance + errors.greatest_of_profile);
+            EXPECT_LT(errors.greatest, tolerance + errors.max_of_profile);
         }
     }
 }

@@ -22,13 +22,13 @@ namespace {
 
 using namespace uw::test;
 
-SpeciesDesc junge(double n, double least_um, double greatest_um, double exponent = 4) {
+SpeciesDesc junge(double n, double min_um, double max_um, double exponent = 4) {
     SpeciesDesc species;
     species.name = "test";
     species.where = "scene.yaml:1:1: water.species.test";
     species.sizes.exponent = exponent;
-    species.sizes.least = least_um * 1e-6;
-    species.sizes.greatest = greatest_um * 1e-6;
+    species.sizes.least = min_um * 1e-6;
+    species.sizes.greatest = max_um * 1e-6;
     species.index.n = n;
     return species;
 }
@@ -500,11 +500,11 @@ TEST(Species, WorkIsCounted) {
     };
     // Some hundred angles, the more the narrower the forward peak is.
     double before = 200;
-    for (const double greatest_um : {50.0, 500.0, 5000.0}) {
-        const SpeciesDesc species = junge(1.1, 0.5, greatest_um);
+    for (const double max_um : {50.0, 500.0, 5000.0}) {
+        const SpeciesDesc species = junge(1.1, 0.5, max_um);
         const double angles = species_work(species, k_nm, water) / sum_of_orders(species);
-        EXPECT_GT(angles, before) << greatest_um;
-        EXPECT_LT(angles, 1000) << greatest_um;
+        EXPECT_GT(angles, before) << max_um;
+        EXPECT_LT(angles, 1000) << max_um;
         before = angles;
     }
     SpeciesDesc measured = junge(1.1, 1, 50);

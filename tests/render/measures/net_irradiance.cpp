@@ -24,7 +24,7 @@ struct Scattering {
     /// the light is scattered in the mean, of which three errors of 2.5e-3 are 4 %; where a steep
     /// peak was lost, 60 % of it were missing. Broad functions have no peak to lose, and more
     /// noise.
-    double most_error;
+    double max_error;
 };
 
 /// Water 2 m deep below a sun at 45 degrees that scatters so; light of the surface is that of
@@ -69,7 +69,7 @@ TEST_P(NetIrradiance, IsTheSameAtAllDepths) {
     }
     const double error = std::hypot(nets[0].error, nets[1].error);
     EXPECT_NEAR(nets[1].mean, nets[0].mean, 3 * error) << nets[0].mean << " " << nets[1].mean;
-    EXPECT_LT(error, GetParam().most_error * down);
+    EXPECT_LT(error, GetParam().max_error * down);
 }
 
 std::string phase(const std::string& function) {

@@ -61,7 +61,7 @@ TEST(PictureNumbers, AreThoseOfEvenLayers) {
     EXPECT_EQ(numbers.contrast, 0);
     EXPECT_DOUBLE_EQ(numbers.lost_to_water.value(), 0.75);
     EXPECT_EQ(numbers.evenness->pixels, 200U);
-    EXPECT_DOUBLE_EQ(numbers.evenness->least_to_mean, 1);
+    EXPECT_DOUBLE_EQ(numbers.evenness->min_to_mean, 1);
     EXPECT_EQ(measure_picture(layers, k_all, 2).share_above, 1);
     EXPECT_EQ(measure_picture(layers, k_all, 2.001).share_above, 0);
 }
@@ -147,7 +147,7 @@ TEST(PictureNumbers, TellHowEvenlySurfacesAreLit) {
     EXPECT_DOUBLE_EQ(lit.median, 10.5);
     EXPECT_DOUBLE_EQ(lit.percentile5, 1.95);  // at 4.95 of 0 .. 99, between a 1 and a 2
     EXPECT_DOUBLE_EQ(lit.percentile95, 19.05);
-    EXPECT_DOUBLE_EQ(lit.least_to_mean, 1 / 10.5);
+    EXPECT_DOUBLE_EQ(lit.min_to_mean, 1 / 10.5);
     layers.albedo = {albedo.plane()};
     const Evenness all = measure_picture(layers, k_all).evenness.value();
     EXPECT_EQ(all.pixels, 120U) << "with the row in the dark";

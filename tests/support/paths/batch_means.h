@@ -90,7 +90,7 @@ class Deviations {
         EXPECT_LE(beyond, allowed) << "of " << count();
         std::cout << count() << " estimates, deviations in stated errors: RMS " << rms()
                   << ", mean " << mean() << ", largest " << largest() << ", beyond three " << beyond
-                  << "; largest relative deviation " << largest_relative() << "\n";
+                  << "; largest relative deviation " << max_relative() << "\n";
     }
     /// Every standard error is below `fraction` of the truth, or that of every estimate whose
     /// name ends with `of`: being within errors says something.
@@ -124,7 +124,7 @@ class Deviations {
         for (const Item& item : items_) z = std::max(z, std::abs(item.z));
         return z;
     }
-    double largest_relative() const {
+    double max_relative() const {
         double relative = 0;
         for (const Item& item : items_)
             relative = std::max(relative, std::abs(item.estimate / item.truth - 1));

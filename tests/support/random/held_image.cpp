@@ -179,7 +179,7 @@ class HeldImage {
         const bool is_diffuse = std::ranges::none_of(desc_.geometry, [](const GeometryDesc& g) {
             return g.type == GeometryDesc::Type::file;
         });
-        const std::vector<double> of_spheres = most_of_spheres(desc_);
+        const std::vector<double> of_spheres = max_of_spheres(desc_);
         const double brightest = brightest_total();
         for_pixels([&](int x, int y) {
             const int first = plan_.first_channel(Layer::position);
@@ -187,10 +187,10 @@ class HeldImage {
             // Rays are traced in single precision.
             const double error = 1e-5 * (1 + value(Layer::range, 0, x, y)) +
                                  1e-6 * std::max({std::abs(at.x), std::abs(at.y), std::abs(at.z)});
-            const std::vector<double> most = most_irradiance(desc_, at, error);
+            const std::vector<double> most = max_irradiance(desc_, at, error);
             const std::optional<Ray> ray = camera.refracted_ray(x + 0.5, y + 0.5);
-            const std::optional<std::vector<double>> most_scattered =
-                ray ? most_in_scatter(desc_, *ray) : std::nullopt;
+            const std::optional<std::vector<double>> max_scattered =
+                ray ? max_in_scatter(desc_, *ray) : std::nullopt;
             for (int band = 0; band < bands(); ++band) {
                 const auto check = [&](Layer layer, double bound) {
                     odd.expect_at_most(value(layer, band, x, y), bound, layer, band, x, y);
@@ -203,9 +203,9 @@ class HeldImage {
                           value(Layer::albedo, band, x, y) * most[b] / std::numbers::pi +
                               of_spheres[b]);
                 // Within what the fast integrator promises (hold_reference).
-                if (most_scattered)
-                    check(Layer::backscatter, 1.02 * (*most_scattered)[b] + 0.01 * brightest);
-                counts_.bounded += most_scattered ? 1 : 0;
+                if (max_scattered)
+                    check(Layer::backscatter, 1.02 * (*max_scattered)[b] + 0.01 * brightest);
+                counts_.bounded += max_scattered ? 1 : 0;
             }
         });
         EXPECT_EQ(odd.first(), "");

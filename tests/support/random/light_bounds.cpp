@@ -17,7 +17,7 @@ double radians(double degrees) {
 
 /// The least solid angle [sr] into which the lamp would send its power, were it as bright in all of
 /// it as it is at most.
-double least_solid_angle(const LampProfileDesc& profile) {
+double min_solid_angle(const LampProfileDesc& profile) {
     if (std::holds_alternative<IsotropicProfileDesc>(profile)) return 4 * k_pi;
     if (const auto* cosine = std::get_if<CosineProfileDesc>(&profile)) {
         const double power = std::log(0.5) / std::log(std::cos(radians(cosine->fwhm / 2)));
@@ -32,12 +32,12 @@ double least_solid_angle(const LampProfileDesc& profile) {
 }
 
 /// [W/sr], of a sun [W/m^2].
-double most_intensity(const LampDesc& lamp, std::size_t band) {
+double max_intensity(const LampDesc& lamp, std::size_t band) {
     if (lamp.spectrum) return k_unknown;
     if (lamp.intensity) return (*lamp.intensity)[band];
     if (!lamp.power) return k_unknown;
     const double power = (*lamp.power)[band];
-    const double angle = least_solid_angle(lamp.profile);
+    const double angle = min_solid_angle(lamp.profile);
     return power == 0 ? 0 : angle > 0 ? power / angle : k_unknown;
 }
 
@@ -53,7 +53,7 @@ double reach(const LampDesc& lamp) {
 
 }  // namespace
 
-std::vector<double> most_irradiance(const SceneDesc& scene, const Point3& at, double error) {
+std::vector<double> max_irradiance(const SceneDesc& scene, const Point3& at, double error) {
     std::vector<double> most(scene.water.bands_nm.size());
     for (const LampDesc& lamp : scene.lamps) {
         double per_intensity = 1;
@@ -62,27 +62,27 @@ std::vector<double> most_irradiance(const SceneDesc& scene, const Point3& at, do
             per_intensity = distance > 0 ? 1 / (distance * distance) : k_unknown;
         }
         for (std::size_t band = 0; band < most.size(); ++band) {
-            const double intensity = most_intensity(lamp, band);
+            const double intensity = max_intensity(lamp, band);
             if (intensity > 0) most[band] += intensity * per_intensity;
         }
     }
     return most;
 }
 
-std::vector<double> most_of_spheres(const SceneDesc& scene) {
+std::vector<double> max_of_spheres(const SceneDesc& scene) {
     std::vector<double> most(scene.water.bands_nm.size());
     for (const LampDesc& lamp : scene.lamps) {
         if (!lamp.extent || lamp.extent->shape != LampExtentDesc::Shape::sphere) continue;
         const double area = k_pi * lamp.extent->radius * lamp.extent->radius;
         for (std::size_t band = 0; band < most.size(); ++band) {
-            const double intensity = most_intensity(lamp, band);
+            const double intensity = max_intensity(lamp, band);
             if (intensity > 0) most[band] += intensity / area;
         }
     }
     return most;
 }
 
-std::optional<std::vector<double>> most_in_scatter(const SceneDesc& scene, const Ray& ray) {
+std::optional<std::vector<double>> max_in_scatter(const SceneDesc& scene, const Ray& ray) {
     const WaterDesc& water = scene.water;
     if (!water.scattering || !water.absorption || !scene.volumes.empty() || water.snow)
         return std::nullopt;
@@ -101,7 +101,7 @@ std::optional<std::vector<double>> most_in_scatter(const SceneDesc& scene, const
         const double length = distance > 0 ? angle / distance : foot < 0 ? -1 / foot : k_unknown;
         for (std::size_t band = 0; band < most.size(); ++band) {
             const double b = water.scattering->b[band];
-            const double intensity = most_intensity(lamp, band);
+            const double intensity = max_intensity(lamp, band);
             if (intensity <= 0 || b <= 0) continue;
             most[band] +=
                 b * peak * intensity * (lamp.sun ? 1 / ((*water.absorption)[band] + b) : length);
