@@ -53,7 +53,7 @@ Json lamps_json(const SceneDesc& scene) {
     for (const LampDesc& lamp : scene.lamps) {
         const char* const frame = lamp.sky               ? "sky"
                                   : lamp.sun             ? "sun"
-                                  : lamp.glow            ? "volume"
+                                  : lamp.emissive_volume ? "volume"
                                   : lamp.fixed_to_camera ? "camera"
                                   : lamp.fixed_to_rig    ? "rig"
                                                          : "world";

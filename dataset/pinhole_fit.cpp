@@ -183,7 +183,7 @@ CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen
     double least = squares.sum(here);
     constexpr int k_max_steps = 100;
     constexpr double k_min_share = 1e-3;  // of a step
-    constexpr double k_gain = 1e-12;           // relative, of the sum: less is rounding
+    constexpr double k_gain = 1e-12;      // relative, of the sum: less is rounding
     for (int i = 0; i < k_max_steps; ++i) {
         const std::vector<double> step = squares.step(here);
         if (step.empty())

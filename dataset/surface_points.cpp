@@ -91,8 +91,8 @@ std::vector<Landmark> point_seeds(const DatasetDefinition& definition, std::size
     constexpr std::size_t k_max_views = 64;
     const std::size_t all = definition.frames.size() * definition.cameras.size();
     const std::size_t views = std::min(all, k_max_views);
-    const auto side = static_cast<int>(
-        std::sqrt(static_cast<double>(k_max_points) / static_cast<double>(views)));
+    const auto side =
+        static_cast<int>(std::sqrt(static_cast<double>(k_max_points) / static_cast<double>(views)));
     std::vector<Landmark> points;
     for (std::size_t i = 0; i < views; ++i) {
         const View view = definition.view(draw * all + i * all / views);

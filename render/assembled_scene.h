@@ -48,7 +48,7 @@ struct AssembledScene {
     std::vector<Lamp> lamps;                 // as the description has them, each at its centre
     std::vector<Lamp> emitters;              // the points that they consist of (LitScene::emitters)
     std::vector<LampSurface> lamp_surfaces;  // of those with an extent
-    std::vector<SceneGlow> glows;            // those that are the light of volumes
+    std::vector<SceneEmission> emissions;    // those that are the light of volumes
     std::optional<Slabs> slabs;              // none: they have not been placed (place_slabs)
     /// The samples of a part of an exposure (render/exposure.h); 0: all of it.
     int first_sample = 0, total_samples = 0;
@@ -64,7 +64,7 @@ struct AssembledScene {
                 surfaces.get(),
                 &emitters,
                 lamp_surfaces.empty() ? nullptr : &lamp_surfaces,
-                glows.empty() ? nullptr : &glows,
+                emissions.empty() ? nullptr : &emissions,
                 water_surface ? &*water_surface : nullptr};
     }
 };

@@ -325,8 +325,8 @@ class GradientParts {
             constexpr double k_with_halves = 4.0 / 3;
             bytes += 8.0 * 3 * k_with_halves * texture.width() * texture.height();
         }
-        const auto parts = static_cast<std::size_t>(std::clamp(
-            k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_max_gradient_parts}));
+        const auto parts = static_cast<std::size_t>(
+            std::clamp(k_gradient_bytes / std::max(bytes, 1.0), 2.0, double{k_max_gradient_parts}));
         require_memory(bytes * static_cast<double>(parts),
                        "the derivatives by voxel and texel need", "use fewer of them");
         for (std::size_t part = 0; part < parts; ++part) {

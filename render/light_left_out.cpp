@@ -21,7 +21,7 @@ namespace uw {
 namespace {
 
 // Guides need to be no better for so few paths.
-constexpr LampField::Fineness k_guides{.orders = 8, .is_coarse = true};
+constexpr LampRadianceTable::Fineness k_guides{.orders = 8, .is_coarse = true};
 
 // The work of a vertex of a path is about that of six camera rays that single scattering is
 // rendered from: this is a tenth of the image's.

@@ -20,12 +20,12 @@ namespace uw {
 namespace {
 
 constexpr std::size_t k_times_as_many = 4;          // as many points for comparison
-constexpr std::size_t k_max_points = 1024;         // as `samples` may be
+constexpr std::size_t k_max_points = 1024;          // as `samples` may be
 constexpr int k_rays_across = 12, k_rays_down = 9;  // rays over the image
 constexpr int k_places = 6;  // on each, at equal steps of what the water takes away
 
 bool is_pointed(const LampDesc& lamp) {
-    return lamp.sky || lamp.glow;
+    return lamp.sky || lamp.emissive_volume;
 }
 
 std::size_t count_of(const AssembledScene& scene, std::size_t lamp) {
@@ -37,7 +37,7 @@ std::size_t count_of(const AssembledScene& scene, std::size_t lamp) {
 /// The emitters of the pointed lamps, with `times` as many of each.
 std::vector<Lamp> pointed_emitters(const AssembledScene& scene, std::size_t times) {
     std::vector<Lamp> emitters;
-    auto glow = scene.glows.begin();
+    auto emissive = scene.emissions.begin();
     for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
         const LampDesc& desc = scene.desc().lamps[i];
         if (!is_pointed(desc)) continue;
@@ -51,8 +51,8 @@ std::vector<Lamp> pointed_emitters(const AssembledScene& scene, std::size_t time
             append_emitters(finer, scene.lamps[i], i, 1, *scene.sky, emitters);
             continue;
         }
-        const GlowingVolume& volume = *(glow++)->volume;
-        append_emitters(scene.lamps[i], i, divide_glow(*volume.field, volume.emission, count),
+        const EmissiveVolume& volume = *(emissive++)->volume;
+        append_emitters(scene.lamps[i], i, divide_emission(*volume.field, volume.emission, count),
                         emitters);
         if (scene.water_surface) append_mirror_images(*scene.water_surface, first, emitters);
     }
@@ -223,8 +223,8 @@ std::vector<std::string> pointed_lamp_notes(const AssembledScene& scene,
         const bool is_sky = desc.sky != nullptr;
         const std::size_t more = std::min(k_times_as_many * lamp.count, k_max_points);
         // Of which drafts have a part.
-        const auto samples =
-            static_cast<std::size_t>(is_sky ? desc.sky->samples : desc.glow->emission.samples);
+        const auto samples = static_cast<std::size_t>(
+            is_sky ? desc.sky->samples : desc.emissive_volume->emission.samples);
         notes.push_back(fmt::format(
             "the {} lights this scene as {} {}: with {} of them the image changes by about {:.0f} "
             "% (RMS), which no stated error includes; {}: {} renders that",

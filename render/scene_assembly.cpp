@@ -82,14 +82,14 @@ void report_volumes(AssembledScene& scene) {
     }
 }
 
-// Precondition: the scene's glows are there.
+// Precondition: the scene's emissions are there.
 void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
     const int thinning = desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1;
-    auto glow = scene.glows.begin();
+    auto emissive = scene.emissions.begin();
     for (const LampDesc& lamp : desc.lamps) {
         const std::size_t first = scene.emitters.size();
-        if (lamp.glow) {
-            const std::vector<GlowPart> parts = merged((glow++)->volume->parts, thinning);
+        if (lamp.emissive_volume) {
+            const std::vector<EmissivePart> parts = merged((emissive++)->volume->parts, thinning);
             scene.lamps.push_back(make_lamp(lamp, parts));
             append_emitters(scene.lamps.back(), scene.lamps.size() - 1, parts, scene.emitters);
             if (scene.water_surface)
@@ -264,7 +264,7 @@ AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
     append(scene.warnings, scene.geometry_warnings);
     submerge(desc, cache, scene);
     focus_suns(desc, cache, scene);
-    scene.glows = cache.glows(desc, scene.warnings);
+    scene.emissions = cache.emissions(desc, scene.warnings);
     place_lamps(desc, scene);
     check_below_surface(desc, scene);
     warn_of_lamps_at_the_camera(desc, scene);
@@ -284,7 +284,7 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
     moved.scattering = scene.scattering;
     moved.snow = scene.snow;
     moved.field = scene.field;
-    moved.glows = scene.glows;
+    moved.emissions = scene.emissions;
     moved.surfaces = scene.surfaces;
     moved.shadow_casters = scene.shadow_casters;
     moved.water_surface = scene.water_surface;

@@ -112,12 +112,12 @@ VolumeSet SceneCache::volumes(const SceneDesc& scene, const WaterModel& water) {
     return set;
 }
 
-SceneCache::KeptGlow SceneCache::make_glow(const VolumeDesc& desc, const SceneDesc& scene) {
+SceneCache::KeptEmission SceneCache::make_emission(const VolumeDesc& desc, const SceneDesc& scene) {
     const EmissionDesc& emission = desc.emission.front();
     LoadedVolume loaded = load_light(desc);
     auto field = std::make_shared<GridField>(std::move(loaded.grids), 1);
     const Emission light(emission, scene.water.bands_nm);
-    std::vector<GlowPart> parts = divide_glow(*field, light, emission.samples);
+    std::vector<EmissivePart> parts = divide_emission(*field, light, emission.samples);
     if (parts.empty())
         loaded.warnings.push_back(
             fmt::format("{}: '{}' gives off no light that is seen; check the unit of its values{}",
@@ -125,29 +125,29 @@ SceneCache::KeptGlow SceneCache::make_glow(const VolumeDesc& desc, const SceneDe
                         emission.stimulus ? ", and how fast the water moves" : ""));
     return {
         desc, scene.water.bands_nm, FileStamps(files_of(desc)),
-        std::make_shared<GlowingVolume>(GlowingVolume{std::move(field), light, std::move(parts)}),
+        std::make_shared<EmissiveVolume>(EmissiveVolume{std::move(field), light, std::move(parts)}),
         std::move(loaded.warnings)};
 }
 
-std::vector<SceneGlow> SceneCache::glows(const SceneDesc& scene,
-                                         std::vector<std::string>& warnings) {
-    std::vector<SceneGlow> result;
-    std::vector<KeptGlow> used;
+std::vector<SceneEmission> SceneCache::emissions(const SceneDesc& scene,
+                                                 std::vector<std::string>& warnings) {
+    std::vector<SceneEmission> result;
+    std::vector<KeptEmission> used;
     for (std::size_t lamp = 0; lamp < scene.lamps.size(); ++lamp) {
-        if (!scene.lamps[lamp].glow) continue;
-        const GlowDesc& glow = *scene.lamps[lamp].glow;
-        VolumeDesc desc = scene.volumes[glow.volume];
+        if (!scene.lamps[lamp].emissive_volume) continue;
+        const EmissiveVolumeDesc& emissive = *scene.lamps[lamp].emissive_volume;
+        VolumeDesc desc = scene.volumes[emissive.volume];
         desc.grids.clear();
-        desc.emission.assign(1, glow.emission);
-        const auto known = std::ranges::find_if(glows_, [&](const KeptGlow& kept) {
+        desc.emission.assign(1, emissive.emission);
+        const auto known = std::ranges::find_if(emissions_, [&](const KeptEmission& kept) {
             return kept.desc == desc && kept.bands_nm == scene.water.bands_nm &&
                    kept.files.are_current();
         });
-        used.push_back(known != glows_.end() ? *known : make_glow(desc, scene));
+        used.push_back(known != emissions_.end() ? *known : make_emission(desc, scene));
         result.push_back({lamp, used.back().volume});
         warnings.insert(warnings.end(), used.back().warnings.begin(), used.back().warnings.end());
     }
-    glows_ = std::move(used);
+    emissions_ = std::move(used);
     return result;
 }
 

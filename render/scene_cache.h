@@ -7,7 +7,7 @@
 
 #include "core/base/input_files.h"
 #include "core/geometry/geometry_scene.h"
-#include "core/light/glow.h"
+#include "core/light/emission.h"
 #include "core/light/submerged.h"
 #include "core/light/sun_focus.h"
 #include "core/paths/scattering_tables.h"
@@ -58,7 +58,8 @@ class SceneCache {
 
     /// The light of a scene's volumes, of those lamps that are such, in their order. Appends
     /// warnings of one line each. Throws as load_volume and Emission.
-    std::vector<SceneGlow> glows(const SceneDesc& scene, std::vector<std::string>& warnings);
+    std::vector<SceneEmission> emissions(const SceneDesc& scene,
+                                         std::vector<std::string>& warnings);
 
     /// The surfaces of a scene. Throws as build_surfaces, and so do the next two.
     const SurfaceSet& surfaces(const SceneDesc& scene);
@@ -108,11 +109,11 @@ class SceneCache {
 
         bool is_of(const VolumeDesc& other, const std::vector<std::vector<GridLoad>>& its) const;
     };
-    struct KeptGlow {
-        VolumeDesc desc;  // its one light is what glows
+    struct KeptEmission {
+        VolumeDesc desc;  // its one light is what emissions
         std::vector<double> bands_nm;
         FileStamps files;
-        std::shared_ptr<const GlowingVolume> volume;
+        std::shared_ptr<const EmissiveVolume> volume;
         std::vector<std::string> warnings;
     };
     struct KeptSurfaces {
@@ -155,14 +156,14 @@ class SceneCache {
         SubmergedParts parts;
     };
 
-    static KeptGlow make_glow(const VolumeDesc& desc, const SceneDesc& scene);
+    static KeptEmission make_emission(const VolumeDesc& desc, const SceneDesc& scene);
     KeptSurfaces build(const SceneDesc& scene);
     std::vector<GeometryDesc> with_level_sets(const SceneDesc& scene,
                                               std::vector<std::string>& warnings);
 
     std::optional<KeptWater> water_;
     std::vector<KeptVolume> volumes_;
-    std::vector<KeptGlow> glows_;
+    std::vector<KeptEmission> emissions_;
     std::shared_ptr<const ConcentrationField> field_;  // of `volumes_`; null: not made
     MeshStore meshes_;
     std::vector<KeptLevelSet> level_sets_;  // of the scene built last

@@ -8,8 +8,8 @@
 #include "core/base/error.h"
 #include "core/base/troubleshooting.h"
 #include "core/light/integrator_table.h"
-#include "core/passes/all_light_pass.h"
-#include "core/passes/forward_pass.h"
+#include "core/passes/forward_scatter_pass.h"
+#include "core/passes/multiple_scattering_pass.h"
 #include "core/passes/pixel_pass.h"
 #include "core/passes/sensor_pass.h"
 #include "core/passes/truth_pass.h"
@@ -29,7 +29,8 @@ constexpr int k_max_samples_beside_paths = 16;
 // leads paths there ends at 48.
 constexpr double k_max_depth = 20;
 
-// Whether light that is scattered or reflected more than once is rendered by AllLightPass.
+// Whether light that is scattered or reflected more than once is rendered by
+// MultipleScatteringPass.
 bool paths_at_nodes(const RenderDesc& render) {
     return scattering_of(render) == RenderDesc::Scattering::multiple &&
            !integrator_kind(render.integrator).traces_paths;
@@ -41,13 +42,13 @@ PassList make_passes(const ImageScene& image, const PathRequest& paths, std::int
     const SceneDesc& scene = image.desc();
     const RenderDesc& render = scene.render;
     PassList passes;  // check_integrator refuses those that do not go together
-    if (paths_at_nodes(render)) passes.add<AllLightPass>(paths.share);
+    if (paths_at_nodes(render)) passes.add<MultipleScatteringPass>(paths.share);
     if (scene.water.snow) passes.add<SnowPass>(*scene.water.snow);
     if (integrator_kind(render.integrator).traces_paths)
         passes.add<PathPass>(render, paths);
     else
         passes.add<PixelPass>(render);
-    if (scene.water.forward_scatter.K > 0) passes.add<ForwardPass>();
+    if (scene.water.forward_scatter.K > 0) passes.add<ForwardScatterPass>();
     passes.add<TruthPass>(image.choice().frame.has_value(), scene.cameras.size() > 1);
     if (scene.camera.sensor) passes.add<SensorPass>(*scene.camera.sensor, frame);
     return passes;

@@ -15,7 +15,7 @@ namespace uw {
 namespace {
 
 constexpr int k_longest_side = 48;  // of the image that is compared [pixels]
-constexpr int k_max_planes = 512;  // more where shadow edges leave the finest sum rough
+constexpr int k_max_planes = 512;   // more where shadow edges leave the finest sum rough
 constexpr double k_quadrature_tolerance = 1e-5;
 
 // In a plume as rough as its voxels, interpolating columns between a lamp's rays, and linearly
@@ -225,9 +225,8 @@ class SceneTrial {
                 check.rms_tolerance = 3 * options_.tolerance;
                 if (measure.coarser) {
                     const std::vector<Spectrum>& coarser = measure.coarser->*component.image;
-                    check.own =
-                        own_error(max_difference(b, coarser, counted, band, measure.dark),
-                                  check.tolerance);
+                    check.own = own_error(max_difference(b, coarser, counted, band, measure.dark),
+                                          check.tolerance);
                     check.tolerance += check.own;
                     check.rms_tolerance +=
                         own_error(rms_difference(b, coarser, band), check.rms_tolerance);

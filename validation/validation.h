@@ -106,9 +106,9 @@ struct LightCheck {
     static constexpr double k_max_errors = 4, k_max_noise = 2;
 
     std::string left, right;
-    std::string light;      // which: "multiple.volume, 540 nm"
-    double deviation = 0;   // of the left's mean from the right's
-    double error = 0;       // standard error of that
+    std::string light;     // which: "multiple.volume, 540 nm"
+    double deviation = 0;  // of the left's mean from the right's
+    double error = 0;      // standard error of that
     double max_error = 0;  // beyond which the comparison says nothing, and fails
     std::optional<PixelSpread> spread{};
 

@@ -13,7 +13,7 @@
 #include "core/geometry/surface_reflection.h"
 #include "core/light/medium.h"
 #include "core/light/planes_integrator.h"
-#include "core/passes/forward_pass.h"
+#include "core/passes/forward_scatter_pass.h"
 #include "core/passes/pixel_renderer.h"
 #include "media/volumes/stratified_field.h"
 #include "media/volumes/vdb_writer.h"
@@ -37,7 +37,8 @@ Renderer make_renderer(const ImageScene& scene) {
 Renderer in_water(const ImageScene& scene, Medium medium) {
     Renderer renderer = make_renderer(scene.with([](SceneDesc& desc) {
         desc.volumes.clear();
-        std::erase_if(desc.lamps, [](const LampDesc& lamp) { return lamp.glow.has_value(); });
+        std::erase_if(desc.lamps,
+                      [](const LampDesc& lamp) { return lamp.emissive_volume.has_value(); });
     }));
     renderer.edit([&](AssembledScene& parts) {
         parts.water.medium = std::move(medium);
@@ -271,7 +272,7 @@ double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band) {
 }
 
 double max_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
-                          const std::vector<char>& counted, std::size_t band, double dark) {
+                      const std::vector<char>& counted, std::size_t band, double dark) {
     const double floor = dark * mean_over_pixels(b, band);
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -298,12 +299,12 @@ constexpr int k_fewest_planes = 8;
 constexpr std::size_t k_max_shadow_rays = 20'000'000;
 
 // The largest relative difference of the backscatter over smooth pixels and bands.
-double max_change(const MethodImage& from, const MethodImage& to,
-                      const std::vector<char>& smooth, std::size_t bands) {
+double max_change(const MethodImage& from, const MethodImage& to, const std::vector<char>& smooth,
+                  std::size_t bands) {
     double largest = 0;
     for (std::size_t band = 0; band < bands; ++band)
-        largest = std::max(
-            largest, max_difference(from.backscatter, to.backscatter, smooth, band, k_dark));
+        largest = std::max(largest,
+                           max_difference(from.backscatter, to.backscatter, smooth, band, k_dark));
     return largest;
 }
 
@@ -326,8 +327,7 @@ PlaneSums sum_planes_to_limit(const TrialScene& uniform, const std::vector<char>
     };
     std::vector<MethodImage> sums;
     const auto rough = [&] {
-        return max_change(sums.back(), sums[sums.size() - 2], smooth, bands) >
-               options.tolerance;
+        return max_change(sums.back(), sums[sums.size() - 2], smooth, bands) > options.tolerance;
     };
     for (int count = k_fewest_planes;
          count <= options.max_planes || (rays_of(count) <= k_max_shadow_rays && rough());
@@ -340,8 +340,7 @@ PlaneSums sum_planes_to_limit(const TrialScene& uniform, const std::vector<char>
         result.limit.backscatter[i] +=
             (result.limit.backscatter[i] - result.coarser.backscatter[i]) / 3;
     for (std::size_t n = 0; n < sums.size(); ++n) {
-        PlanesStep step{k_fewest_planes << n, max_change(sums[n], result.limit, smooth, bands),
-                        0};
+        PlanesStep step{k_fewest_planes << n, max_change(sums[n], result.limit, smooth, bands), 0};
         if (n > 0 && step.error > 0) step.order = std::log2(result.steps.back().error / step.error);
         result.steps.push_back(step);
     }

@@ -65,7 +65,7 @@ double mean_over_pixels(const std::vector<Spectrum>& image, std::size_t band);
 /// The largest difference of `a` relative to `b` over the pixels that `counted` marks; those darker
 /// than the fraction `dark` of b's mean count as that bright.
 double max_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
-                          const std::vector<char>& counted, std::size_t band, double dark);
+                      const std::vector<char>& counted, std::size_t band, double dark);
 
 /// The RMS of the differences, relative to b's mean.
 double rms_difference(const std::vector<Spectrum>& a, const std::vector<Spectrum>& b,
@@ -80,7 +80,7 @@ struct PlaneSums {
 
 struct PlaneSumOptions {
     double tolerance;  // sums are refined while they change by more [relative]
-    int max_planes;   // slabs of the finest sum, and more where it is still rough
+    int max_planes;    // slabs of the finest sum, and more where it is still rough
     std::function<void(const std::string&)> say;  // gets the name of each sum
 };
 
@@ -98,8 +98,8 @@ std::string planes_name(int count);
 /// Forward scatter of the light of surfaces (physics section 6; the paper's equations 14 and 16) in
 /// uniform water, written out as a sum over all pairs of pixels: every pixel's light times the
 /// closed form of its own kernel over every other pixel and its mirror images at the borders. No
-/// transforms, no interpolated kernel widths, no float: shares nothing with ForwardPass but the
-/// focal lengths in the water. Surfaces are lit by `lighting`. Cost: pixels^2.
+/// transforms, no interpolated kernel widths, no float: shares nothing with ForwardScatterPass but
+/// the focal lengths in the water. Surfaces are lit by `lighting`. Cost: pixels^2.
 std::vector<Spectrum> forward_by_direct_sum(const TrialScene& trial,
                                             const SurfaceLighting& lighting);
 

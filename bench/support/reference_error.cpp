@@ -83,8 +83,7 @@ ReferenceError compare_with_reference(const AssembledScene& scene, const LayerPl
     const double scale = 1 / mean(truth);
     // If the errors e and 2e are uncorrelated, the difference is sqrt(5) e.
     return {static_cast<int>(chosen.size()), scale * rmse(measured, truth),
-            scale * max_difference(measured, truth),
-            scale * rmse(coarse, truth) / std::sqrt(5.0)};
+            scale * max_difference(measured, truth), scale * rmse(coarse, truth) / std::sqrt(5.0)};
 }
 
 }  // namespace uw::bench

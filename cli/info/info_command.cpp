@@ -251,7 +251,8 @@ DraftContrast draft_contrast(Renderer& renderer, const ImageScene& scene, int wi
     renderer.set_scene(with.with([](SceneDesc& desc) {
         desc.volumes.clear();
         // The light of a volume is a lamp, which names its volume.
-        std::erase_if(desc.lamps, [](const LampDesc& lamp) { return lamp.glow.has_value(); });
+        std::erase_if(desc.lamps,
+                      [](const LampDesc& lamp) { return lamp.emissive_volume.has_value(); });
     }));
     renderer.render();
     const Film before = renderer.release_film();
@@ -263,8 +264,8 @@ DraftContrast draft_contrast(Renderer& renderer, const ImageScene& scene, int wi
 /// The same; none if the scene has no volume, or no lamp to see it by but the light of volumes:
 /// without them its picture is black.
 std::optional<DraftContrast> draft_contrast(Renderer& renderer, const ImageScene& scene) {
-    const auto is_glow = [](const LampDesc& lamp) { return lamp.glow.has_value(); };
-    if (scene.desc().volumes.empty() || std::ranges::all_of(scene.desc().lamps, is_glow))
+    const auto is_emissive = [](const LampDesc& lamp) { return lamp.emissive_volume.has_value(); };
+    if (scene.desc().volumes.empty() || std::ranges::all_of(scene.desc().lamps, is_emissive))
         return std::nullopt;
     const DraftContrast draft = draft_contrast(renderer, scene, k_draft_width);
     if (draft.seen >= k_min_seen) return draft;

@@ -574,7 +574,7 @@ constexpr double k_max_small = 1e12 / k_large_per_small;  // what scenes take of
 constexpr double k_min_usual = 1e-6, k_max_usual = 1e6;
 constexpr std::size_t k_wanted_band = 1;         // of the default bands: 540 nm
 constexpr int k_lines = 24, k_fewest_lines = 4;  // across each side
-constexpr double k_max_regions = 2e6;           // blocks and tiles that all of them meet
+constexpr double k_max_regions = 2e6;            // blocks and tiles that all of them meet
 
 double round_to_two_digits(double value) {
     const double power = std::pow(10, std::floor(std::log10(value)) - 1);

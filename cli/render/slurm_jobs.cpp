@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr int k_min_minutes = 10;  // of a job: nodes differ, and file systems wait
 constexpr int k_min_megabytes = 500;
 constexpr double k_bytes_per_s = 20e6;  // that a merging job reads and checks at least
-constexpr int k_max_restarts = 20;     // of a task that was killed
+constexpr int k_max_restarts = 20;      // of a task that was killed
 
 int whole_minutes(double seconds) {
     return std::max(k_min_minutes, static_cast<int>(std::ceil(k_time_margin * seconds / 60)));

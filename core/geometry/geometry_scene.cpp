@@ -427,8 +427,7 @@ class Builder {
 
     void extend_bounds(const GeometryDesc& desc, const Bounds& bounds) {
         for (int axis = 0; axis < 3; ++axis) {
-            if (!(bounds.min[axis] >= -k_max_coordinate &&
-                  bounds.max[axis] <= k_max_coordinate)) {
+            if (!(bounds.min[axis] >= -k_max_coordinate && bounds.max[axis] <= k_max_coordinate)) {
                 throw InputError(fmt::format("{}: extends beyond {:g} m; check its transform",
                                              desc.where, k_max_coordinate));
             }

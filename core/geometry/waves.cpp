@@ -120,7 +120,7 @@ class WaterWaves::Shape {
     /// What a part of the surface does not exceed.
     struct Bounds {
         double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
-        double steepest = 0;     // of the slope
+        double steepest = 0;    // of the slope
         double max_curved = 0;  // of the second derivative in any direction [1/m]
 
         void include(const Bounds& other) {

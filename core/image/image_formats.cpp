@@ -154,8 +154,7 @@ std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::pa
     const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(file, status));
     constexpr std::int64_t k_max_pixels = std::int64_t{1} << 33;
     constexpr std::int64_t k_max_values_per_byte = 4096;  // as in check_image_size
-    if (status || pixels > k_max_pixels ||
-        pixels * image->channels / k_max_values_per_byte > bytes)
+    if (status || pixels > k_max_pixels || pixels * image->channels / k_max_values_per_byte > bytes)
         throw InputError(
             fmt::format("{}: {} x {} pixels are more than the file holds, or than the "
                         "2^33 supported; scale the image down",

@@ -70,8 +70,8 @@ inline constexpr std::int64_t k_max_whole_pixels = std::int64_t{1} << 26;
 
 /// A TIFF or OpenEXR of more than `max_whole` pixels; null for other files. Throws InputError if
 /// it is damaged, has more than 2^33 pixels or more than its bytes can hold; IoError.
-std::shared_ptr<const PartialImage> open_partial_image(
-    const std::filesystem::path& file, std::int64_t max_whole = k_max_whole_pixels);
+std::shared_ptr<const PartialImage> open_partial_image(const std::filesystem::path& file,
+                                                       std::int64_t max_whole = k_max_whole_pixels);
 
 /// A format that images are written in. A picture is what is to be seen, in whole numbers of 8 or
 /// 16 bits; light is R, G and B as they are, in floating point.
@@ -80,7 +80,7 @@ struct OutputFormat {
     std::array<std::string_view, 2> endings;  // lower case; the second may be empty
     enum class Holds { pictures, light, either } holds;
     enum class Library { openexr, libpng, libjpeg, openimageio } library;
-    const char* writer = nullptr;       // OpenImageIO's name of it
+    const char* writer = nullptr;      // OpenImageIO's name of it
     int usual_bits = 8, max_bits = 8;  // per channel of a picture
 };
 

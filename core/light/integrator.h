@@ -14,7 +14,7 @@
 namespace uw {
 
 struct LampSurface;
-struct SceneGlow;
+struct SceneEmission;
 class WaterSurface;
 
 /// Everything that integrators operate on; all of it must outlive them.
@@ -28,7 +28,7 @@ struct LitScene {
     /// The luminous surfaces of lamps with an extent; null if there are none.
     const std::vector<LampSurface>* lamp_surfaces = nullptr;
     /// The volumes that give off light; null if there are none.
-    const std::vector<SceneGlow>* glows = nullptr;
+    const std::vector<SceneEmission>* emissions = nullptr;
 
     /// The water's surface, at which light is reflected; null: the water has no end.
     const WaterSurface* water_surface = nullptr;

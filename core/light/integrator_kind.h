@@ -24,7 +24,7 @@ struct LightTransport {
     /// as a whole.
     std::vector<std::unique_ptr<const Integrator>> parts{};
     /// Random paths: of all light (IntegratorKind::traces_paths), or of what the other two leave
-    /// out (AllLightPass). Null unless a pass needs them.
+    /// out (MultipleScatteringPass). Null unless a pass needs them.
     std::shared_ptr<const PathTracer> paths{};
 
     /// Replaces the integrator, and its parts with it.

@@ -194,13 +194,13 @@ int point_count(const LampDesc& desc, int thinning) {
 
 }  // namespace
 
-Lamp make_lamp(const LampDesc& desc, std::span<const GlowPart> parts) {
-    const std::vector<GlowPart> whole = merged(parts, static_cast<int>(parts.size()));
+Lamp make_lamp(const LampDesc& desc, std::span<const EmissivePart> parts) {
+    const std::vector<EmissivePart> whole = merged(parts, static_cast<int>(parts.size()));
     if (whole.empty()) return {desc.name, Point3(), IsotropicProfile{}, Spectrum{}};
     return {desc.name, whole.front().centre, IsotropicProfile{}, whole.front().intensity};
 }
 
-void append_emitters(const Lamp& lamp, std::size_t index, std::span<const GlowPart> parts,
+void append_emitters(const Lamp& lamp, std::size_t index, std::span<const EmissivePart> parts,
                      std::vector<Lamp>& emitters) {
     const auto sum = [](const Spectrum& bands) {
         double all = 0;
@@ -210,7 +210,7 @@ void append_emitters(const Lamp& lamp, std::size_t index, std::span<const GlowPa
     const double all = sum(lamp.axis_intensity());
     // A lamp that consists of nothing is dark, but there: others keep their numbers.
     if (parts.empty()) emitters.push_back(lamp.emitter(index, lamp.position(), 1));
-    for (const GlowPart& part : parts) {
+    for (const EmissivePart& part : parts) {
         LampFrame frame{{}, {1, 0, 0}, {0, 1, 0}};
         frame.extent.shape = LampExtentDesc::Shape::sphere;
         frame.extent.radius = part.radius;

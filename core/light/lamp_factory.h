@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/base/vector_math.h"
-#include "core/light/glow.h"
+#include "core/light/emission.h"
 #include "core/light/lamp.h"
 #include "core/light/lamps_in_view.h"
 #include "core/light/sky.h"
@@ -37,10 +37,10 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
                      const Affine& world_from_camera, std::vector<Lamp>& emitters);
 
 /// The light of a volume as a lamp at the middle of it, with all of its intensity.
-Lamp make_lamp(const LampDesc& desc, std::span<const GlowPart> parts);
+Lamp make_lamp(const LampDesc& desc, std::span<const EmissivePart> parts);
 
 /// Appends a point for each of the `parts` of `lamp`, the light of a volume.
-void append_emitters(const Lamp& lamp, std::size_t index, std::span<const GlowPart> parts,
+void append_emitters(const Lamp& lamp, std::size_t index, std::span<const EmissivePart> parts,
                      std::vector<Lamp>& emitters);
 
 /// Appends the luminous surface of `lamp`, made of `desc`, if it has an extent. The other arguments

@@ -193,15 +193,15 @@ class ColumnWalk {
 
 // Between the knots of the grid, a quarter of a voxel apart but where it is constant, the light is
 // linear and the water's columns are smooth: two Gauss nodes for each half of an optical depth.
-void LampsInView::append_volume(const SceneGlow& glow, const Ray& ray, double reach,
+void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, double reach,
                                 std::vector<SeenLamp>& seen) const {
-    const ConcentrationField& field = *glow.volume->field;
+    const ConcentrationField& field = *emissive.volume->field;
     const double end = std::min(reach, inside(ray, field.bounds()).end);
     if (!(end > 0)) return;
     thread_local ConcentrationProfile light, water;
     thread_local std::vector<double> column;
     field.profile(ray, end, light);
-    SeenLamp lamp{glow.lamp, 0, {}, {}, true};
+    SeenLamp lamp{emissive.lamp, 0, {}, {}, true};
     double weight = 0;
     std::optional<ColumnWalk> columns;
     // The least and the greatest of the bands.
@@ -235,7 +235,7 @@ void LampsInView::append_volume(const SceneGlow& glow, const Ray& ray, double re
             for (const QuadratureNode& node : gauss_legendre(2)) {
                 const double t = (piece + node.position) / pieces, s = begin + t * length;
                 const Spectrum emitted = node.weight * length / pieces *
-                                         glow.volume->emission.of(first + t * (last - first));
+                                         emissive.volume->emission.of(first + t * (last - first));
                 columns->find(s, column);
                 lamp.radiance += emitted;
                 lamp.arriving += attenuation_.transmittance(s, column) * emitted;
@@ -251,8 +251,9 @@ void LampsInView::append_volume(const SceneGlow& glow, const Ray& ray, double re
 }
 
 void LampsInView::append(const Ray& ray, double reach, std::vector<SeenLamp>& seen) const {
-    if (scene_.glows)
-        for (const SceneGlow& glow : *scene_.glows) append_volume(glow, ray, reach, seen);
+    if (scene_.emissions)
+        for (const SceneEmission& emissive : *scene_.emissions)
+            append_volume(emissive, ray, reach, seen);
     if (!scene_.lamp_surfaces) return;
     for (const LampSurface& surface : *scene_.lamp_surfaces) {
         const double distance = surface.crossing(ray);

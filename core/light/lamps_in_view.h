@@ -7,7 +7,7 @@
 
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
-#include "core/light/glow.h"
+#include "core/light/emission.h"
 #include "core/light/integrator.h"
 #include "core/light/lamp.h"
 #include "core/light/lamp_patch.h"
@@ -106,7 +106,7 @@ class LampsInView {
     void append(const Ray& ray, double reach, std::vector<SeenLamp>& seen) const;
 
   private:
-    void append_volume(const SceneGlow& glow, const Ray& ray, double reach,
+    void append_volume(const SceneEmission& emissive, const Ray& ray, double reach,
                        std::vector<SeenLamp>& seen) const;
 
     LitScene scene_;

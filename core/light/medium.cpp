@@ -95,8 +95,7 @@ bool DepthTolerance::allows(std::span<const double> error, double length,
 
 double DepthTolerance::min_depth(double length, std::span<const double> columns) const {
     double depth = min_uniform_ * length;
-    for (std::size_t k = 0; k < min_per_unit_.size(); ++k)
-        depth += min_per_unit_[k] * columns[k];
+    for (std::size_t k = 0; k < min_per_unit_.size(); ++k) depth += min_per_unit_[k] * columns[k];
     return depth;
 }
 

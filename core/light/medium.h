@@ -156,7 +156,7 @@ class DepthTolerance {
 
   private:
     double optical_depth_ = 0;
-    double min_uniform_ = 0;                            // over the bands [1/m]
+    double min_uniform_ = 0;                           // over the bands [1/m]
     std::vector<double> min_per_unit_, max_per_unit_;  // per constituent [1/m per unit]
 };
 

@@ -54,8 +54,7 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
             // Ten times as far as the densest band's light reaches only the others' is left, of
             // which steps of that length in proportion are as small a part.
             if (passage.parallel)
-                return max_c > 0 ? std::max(1 / max_c, 0.1 * s) / (1 + passage.rate())
-                                      : k_far;
+                return max_c > 0 ? std::max(1 / max_c, 0.1 * s) / (1 + passage.rate()) : k_far;
             return std::max(passage.radius(s), k_lamp_radius);
         };
         // The water's surface may be less than a step away.
@@ -139,7 +138,7 @@ namespace {
 // Initial panels of the quadrature: narrower than a phase function's forward peak where it matters,
 // and than the shadows of thin things, so that no feature is missed between the first nodes.
 constexpr std::size_t k_first_panels = 500;
-constexpr double k_min_rate = 1e-3;  // of -e^(-c s) [1/m]
+constexpr double k_min_rate = 1e-3;    // of -e^(-c s) [1/m]
 constexpr int k_deepest_halving = 18;  // 2^-18 of a first panel at a shadow's edge
 
 // Simpson's rule; `sixth` of the panel's width.

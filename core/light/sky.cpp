@@ -423,8 +423,7 @@ class PanoramaSky : public Sky::Distribution {
     int square_of_pixels() const {
         constexpr int k_max_columns = 1024, k_fewest_columns = 256;
         for (int side = 1; pixels_.width() / side >= k_fewest_columns; ++side)
-            if (pixels_.width() % side == 0 && pixels_.width() / side <= k_max_columns)
-                return side;
+            if (pixels_.width() % side == 0 && pixels_.width() / side <= k_max_columns) return side;
         return 1;
     }
     // Weighted by cos theta dOmega.

@@ -17,7 +17,7 @@ namespace uw {
 namespace {
 
 /// Sums the terms of a pixel, each times its scores.
-class ScoreSum final : public PathTerms {
+class ScoreSum final : public ContributionSink {
   public:
     explicit ScoreSum(const ChangedScenes& scenes)
         : bands_(scenes.bands()),
@@ -29,12 +29,12 @@ class ScoreSum final : public PathTerms {
         scores_.begin();
         sums_.assign(sums_.size(), 0.0);
     }
-    int turn(int before, const PathTurn& turn) override {
+    int add_vertex(int before, const PathVertex& vertex) override {
         // A pixel's many paths need not be kept.
-        if (before == k_no_turn) scores_.begin();
-        return scores_.turn(before, turn);
+        if (before == k_no_vertex) scores_.begin();
+        return scores_.add_vertex(before, vertex);
     }
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         scores_.find(term, {}, score_);
         for (std::size_t i = 0; i < sums_.size(); ++i)
             sums_[i] += term.radiance[i % bands_] * score_[i];
@@ -115,7 +115,7 @@ std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedSc
 namespace {
 
 /// Hands the worth of each term of a pixel to all that gather derivatives from it.
-class WorthOfTerms final : public PathTerms {
+class WorthOfTerms final : public ContributionSink {
   public:
     WorthOfTerms(const PartGradients& gradients, std::size_t bands)
         : gradients_(gradients), factors_(bands), worth_(bands) {}
@@ -134,13 +134,13 @@ class WorthOfTerms final : public PathTerms {
         take_kept();
         for (const auto& gradient : gradients_) gradient->finish();
     }
-    int turn(int before, const PathTurn& turn) override {
-        if (before == k_no_turn) take_kept();
-        int number = k_no_turn;
-        for (const auto& gradient : gradients_) number = gradient->turn(before, turn);
+    int add_vertex(int before, const PathVertex& vertex) override {
+        if (before == k_no_vertex) take_kept();
+        int number = k_no_vertex;
+        for (const auto& gradient : gradients_) number = gradient->add_vertex(before, vertex);
         return number;
     }
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         double size = 0;
         for (std::size_t b = 0; b < factors_.size(); ++b) {
             worth_[b] = factors_[b] * term.radiance[b];
@@ -157,17 +157,17 @@ class WorthOfTerms final : public PathTerms {
     static constexpr std::size_t k_of_ray = 8;
 
     struct Kept {
-        PathTerm term;
+        PathContribution term;
         double size;
         std::size_t columns, concentration;  // how many
     };
 
-    void hand_on(const PathTerm& term) {
+    void hand_on(const PathContribution& term) {
         for (const auto& gradient : gradients_) gradient->add(term, worth_);
     }
 
     // What the term refers to of the ray is not there any more when it is taken.
-    void keep(const PathTerm& term, double size) {
+    void keep(const PathContribution& term, double size) {
         kept_.push_back({term, size, term.columns.size(), term.concentration.size()});
         kept_.back().term.radiance = {};
         for (const std::span<const double> values :

@@ -10,8 +10,8 @@
 #include "core/image/film.h"
 #include "core/light/volume_integrator.h"
 #include "core/passes/pixel_renderer.h"
+#include "core/paths/contribution_gradient.h"
 #include "core/paths/path_scores.h"
-#include "core/paths/term_gradient.h"
 
 namespace uw {
 
@@ -55,7 +55,7 @@ struct PixelWeights {
 
 /// Where derivatives of that number are gathered: those of a part of the image, which is rendered
 /// in one thread. Not empty.
-using PartGradients = std::vector<std::unique_ptr<TermGradient>>;
+using PartGradients = std::vector<std::unique_ptr<ContributionGradient>>;
 
 /// Gathers them for all parts, from all nodes of each ray, or, if there are `draws`, from a few
 /// that stand for all without bias: following what each of them met is what takes the time.

@@ -33,8 +33,9 @@ struct ImageProgress {
     /// What an image of light paths has reached so far; it changes only between two calls of the
     /// progress callback.
     PathAccuracy paths;
-    /// The stated standard error of light scattered more than once, where AllLightPass renders it,
-    /// relative to the image's mean, and that of each band, relative to the band's mean.
+    /// The stated standard error of light scattered more than once, where MultipleScatteringPass
+    /// renders it, relative to the image's mean, and that of each band, relative to the band's
+    /// mean.
     std::optional<double> multiple_error;
     std::vector<double> multiple_error_of_bands;
     std::uint64_t snow_particles = 0;  // drawn

@@ -51,19 +51,19 @@ struct Kind {
     double PathCounts::*count;
     Stream stream;
     Spectrum PixelResult::*part;
-    double (*trace)(const PathTracer&, const CameraSegment&, PathRandom&, PathTerms&);
+    double (*trace)(const PathTracer&, const CameraSegment&, PathRandom&, ContributionSink&);
 };
 
 constexpr std::array k_kinds{
     Kind{&PathCounts::water, k_water, &PixelResult::multiple_volume,
          [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
-            PathTerms& terms) { return paths.trace_water(segment, random, terms); }},
+            ContributionSink& terms) { return paths.trace_water(segment, random, terms); }},
     Kind{&PathCounts::lit, k_lit, &PixelResult::multiple_volume,
          [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
-            PathTerms& terms) { return paths.trace_lit_surfaces(segment, random, terms); }},
+            ContributionSink& terms) { return paths.trace_lit_surfaces(segment, random, terms); }},
     Kind{&PathCounts::surface, k_surface, &PixelResult::multiple_surface,
          [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
-            PathTerms& terms) { return paths.trace_surface(segment, random, terms); }}};
+            ContributionSink& terms) { return paths.trace_surface(segment, random, terms); }}};
 
 }  // namespace
 
@@ -81,9 +81,9 @@ struct PathPixels::Batch {
 };
 
 /// Adds up terms, in the pixel and for the batch.
-class PathPixels::Sum final : public PathTerms {
+class PathPixels::Sum final : public ContributionSink {
   public:
-    Sum(PixelResult& pixel, std::size_t bands, PathTerms* follower = nullptr)
+    Sum(PixelResult& pixel, std::size_t bands, ContributionSink* follower = nullptr)
         : pixel_(pixel), bands_(bands), follower_(follower) {}
 
     std::size_t bands() const { return bands_; }
@@ -98,10 +98,10 @@ class PathPixels::Sum final : public PathTerms {
     /// The sum of all terms since begin_batch.
     const Spectrum& batch() const { return batch_; }
 
-    int turn(int before, const PathTurn& turn) override {
-        return follower_ != nullptr ? follower_->turn(before, turn) : k_no_turn;
+    int add_vertex(int before, const PathVertex& vertex) override {
+        return follower_ != nullptr ? follower_->add_vertex(before, vertex) : k_no_vertex;
     }
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         if (follower_ != nullptr) follower_->add(term);
         add_to(pixel_.*part_, term);
         add_to(batch_, term);
@@ -117,20 +117,20 @@ class PathPixels::Sum final : public PathTerms {
     }
 
   private:
-    void add_to(Spectrum& sum, const PathTerm& term) const {
+    void add_to(Spectrum& sum, const PathContribution& term) const {
         uw::add(sum.first(bands_), term.radiance);
     }
 
     PixelResult& pixel_;
     std::size_t bands_;
-    PathTerms* follower_;
+    ContributionSink* follower_;
     Spectrum PixelResult::*part_ = &PixelResult::direct;
     Interval first_slab_{};
     Spectrum batch_;
 };
 
 void PathPixels::render(int x, int y, const PathRound& round, const TracedCallback& traced,
-                        PixelResult& result, PathTerms* follower) const {
+                        PixelResult& result, ContributionSink* follower) const {
     thread_local PixelView view;
     render_the_rest(x, y, round, view, result);
     const auto bands = static_cast<std::size_t>(pixels_.band_count());
@@ -264,12 +264,12 @@ void PathPixels::add_lamps_in_view(const Ray& ray, double reach, Sum& sum) const
     lamps.clear();
     pixels_.lamps_in_view().append(ray, reach, lamps);
     sum.set_part(&PixelResult::direct);
-    const int turn = sum.turn(k_no_turn, {PathTurn::Kind::camera, ray.origin});
+    const int turn = sum.add_vertex(k_no_vertex, {PathVertex::Kind::camera, ray.origin});
     for (const SeenLamp& lamp : lamps)
         sum.add({.lamp = lamp.lamp,
                  .distance = lamp.distance,
                  .radiance = lamp.arriving.first(sum.bands()),
-                 .turn = turn,
+                 .vertex = turn,
                  .place = ray.at(lamp.distance)});
 }
 

@@ -58,7 +58,7 @@ class PathPixels {
     /// `follower`: is told of every turn and term as well, of lamps in view and of what surfaces
     /// reflect of them, too; null: nobody is.
     void render(int x, int y, const PathRound& round, const TracedCallback& traced,
-                PixelResult& result, PathTerms* follower = nullptr) const;
+                PixelResult& result, ContributionSink* follower = nullptr) const;
 
   private:
     class Sum;
@@ -81,8 +81,8 @@ class PathPixels {
 
 /// What is requested of the light paths of an image.
 struct PathRequest {
-    /// How many paths the fast form of all light takes (AllLightPass), as a multiple of those that
-    /// the image's quality does.
+    /// How many paths the fast form of all light takes (MultipleScatteringPass), as a multiple of
+    /// those that the image's quality does.
     double share = 1;
     // Of images that are rendered by light paths (IntegratorKind::traces_paths):
     /// The greatest PathAccuracy::error, instead of the scene's samples. No more than k_max_paths

@@ -10,21 +10,23 @@ namespace uw {
 namespace {
 
 /// Passes terms on, each times a factor.
-class WeightedTerms final : public PathTerms {
+class WeightedTerms final : public ContributionSink {
   public:
-    WeightedTerms(PathTerms& terms, double weight) : terms_(terms), weight_(weight) {}
+    WeightedTerms(ContributionSink& terms, double weight) : sink_(terms), weight_(weight) {}
 
-    int turn(int before, const PathTurn& turn) override { return terms_.turn(before, turn); }
-    void add(const PathTerm& term) override {
+    int add_vertex(int before, const PathVertex& vertex) override {
+        return sink_.add_vertex(before, vertex);
+    }
+    void add(const PathContribution& term) override {
         for (std::size_t b = 0; b < term.radiance.size(); ++b)
             radiance_[b] = weight_ * term.radiance[b];
-        PathTerm weighted = term;
+        PathContribution weighted = term;
         weighted.radiance = radiance_.first(term.radiance.size());
-        terms_.add(weighted);
+        sink_.add(weighted);
     }
 
   private:
-    PathTerms& terms_;
+    ContributionSink& sink_;
     double weight_;
     Spectrum radiance_;
 };
@@ -32,17 +34,18 @@ class WeightedTerms final : public PathTerms {
 }  // namespace
 
 void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
-                      const SurfaceLight& light, std::size_t in_light, PathTerms& terms,
+                      const SurfaceLight& light, std::size_t in_light, ContributionSink& terms,
                       Spectrum& leaving) {
     const auto bands = static_cast<std::size_t>(scene.medium->band_count());
     const std::span<const double> to_camera = light.to_camera(in_light);
     const SurfaceReflection reflection(*scene.surfaces, surface, static_cast<int>(bands));
     Spectrum arriving, brdf;
-    PathTerm term{.distance = surface.hit.distance,
-                  .radiance = arriving.first(bands),
-                  .turn = terms.turn(k_no_turn, {PathTurn::Kind::camera, surface.ray.origin}),
-                  .place = surface.hit.position,
-                  .hit = &surface.hit};
+    PathContribution term{
+        .distance = surface.hit.distance,
+        .radiance = arriving.first(bands),
+        .vertex = terms.add_vertex(k_no_vertex, {PathVertex::Kind::camera, surface.ray.origin}),
+        .place = surface.hit.position,
+        .hit = &surface.hit};
     if (reflection.emits()) {
         for (std::size_t b = 0; b < bands; ++b) {
             leaving[b] += reflection.emission()[b];
@@ -67,19 +70,20 @@ void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
 }
 
 void add_quadrature_terms(const PixelRenderer& pixels, const VolumeIntegrator& water,
-                          const PixelView& view, const SurfaceLight& light, PathTerms& terms) {
+                          const PixelView& view, const SurfaceLight& light,
+                          ContributionSink& terms) {
     if (!view.ray) return;
     const auto bands = static_cast<std::size_t>(pixels.band_count());
     WeightedTerms of_sample(terms, 1.0 / pixels.samples());
     Spectrum ignored;
     for (std::size_t i = 0; i < view.samples.size(); ++i)
         add_direct_light(pixels.scene(), view.samples[i], light, i, of_sample, ignored);
-    const int turn = terms.turn(k_no_turn, {PathTurn::Kind::camera, view.ray->origin});
+    const int turn = terms.add_vertex(k_no_vertex, {PathVertex::Kind::camera, view.ray->origin});
     for (const SeenLamp& lamp : view.lamps)
         of_sample.add({.lamp = lamp.lamp,
                        .distance = lamp.distance,
                        .radiance = lamp.arriving.first(bands),
-                       .turn = turn,
+                       .vertex = turn,
                        .place = view.ray->at(lamp.distance)});
     // Light that is scattered before a sample's distance is in that sample's light.
     std::vector<double> shares(view.weights.size());
@@ -93,7 +97,7 @@ void add_quadrature_terms(const PixelRenderer& pixels, const VolumeIntegrator& w
                    .from_water = true,
                    .distance = node.s,
                    .radiance = arriving.first(bands),
-                   .turn = turn,
+                   .vertex = turn,
                    .place = view.ray->at(node.s),
                    .emitter = node.emitter,
                    .columns = node.columns,

@@ -13,12 +13,13 @@ namespace uw {
 /// emitter's light, `light` at the place `in_light`. `leaving`: its radiance at the surface itself
 /// is added [W m^-2 sr^-1].
 void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
-                      const SurfaceLight& light, std::size_t in_light, PathTerms& terms,
+                      const SurfaceLight& light, std::size_t in_light, ContributionSink& terms,
                       Spectrum& leaving);
 
 /// Adds all that PixelRenderer sums up for a pixel, light scattered or reflected once: the samples
 /// of `view`, whose light is `light`, lamps in view, and every node of `water` on its ray.
 void add_quadrature_terms(const PixelRenderer& pixels, const VolumeIntegrator& water,
-                          const PixelView& view, const SurfaceLight& light, PathTerms& terms);
+                          const PixelView& view, const SurfaceLight& light,
+                          ContributionSink& terms);
 
 }  // namespace uw

@@ -25,12 +25,12 @@ NodeLattice::Positions NodeLattice::Positions::amid(const RaySource& rays, int p
             1};
 }
 
-NodeLattice::NodeLattice(const MultipleNodes& estimator, const Positions& positions)
+NodeLattice::NodeLattice(const RadianceEstimator& estimator, const Positions& positions)
     : estimator_(estimator), positions_(positions) {
     raw_.assign(positions.columns, positions.rows);
 }
 
-MultipleNodes::Place NodeLattice::place(int i, int j) const {
+RadianceEstimator::Place NodeLattice::place(int i, int j) const {
     return {(i + positions_.offset) * positions_.step_x,
             (j + positions_.offset) * positions_.step_y,
             PathRandom::seed_of(static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j),
@@ -54,19 +54,19 @@ namespace {
 
 constexpr double k_share_of_seen = 0.85;  // of the time
 
-void append(const NodeLight& light, std::vector<float>& radiance) {
+void append(const NodeRadiance& light, std::vector<float>& radiance) {
     radiance.insert(radiance.end(), light.diffuse.begin(), light.diffuse.end());
 }
 
 }  // namespace
 
-IndirectLight NodeLattice::light_surfaces(const NodePaths& paths, const ShareCallback& progress) {
+IrradianceCache NodeLattice::light_surfaces(const NodePaths& paths, const ShareCallback& progress) {
     for_each(
         all(), [&](double share) { progress(k_share_of_seen * share); },
         [&](int i, int j) { estimator_.estimate_surface(place(i, j), paths, raw_(i, j)); });
     smooth_ = smoothed_surfaces(raw_, estimator_.groups(), estimator_.bands());
     const std::size_t values = estimator_.groups() * estimator_.bands();
-    std::vector<SurfacePoint> points;
+    std::vector<IrradianceRecord> points;
     std::vector<float> radiance;
     for (const SmoothNode& node : smooth_) {
         if (!node.surface) continue;
@@ -74,8 +74,8 @@ IndirectLight NodeLattice::light_surfaces(const NodePaths& paths, const ShareCal
         append(node.light, radiance);
     }
     const std::vector<SurfaceSample> unseen =
-        find_unseen_surfaces(IndirectLight(points, radiance, values));
-    std::vector<NodeLight> lights(unseen.size());
+        find_unseen_surfaces(IrradianceCache(points, radiance, values));
+    std::vector<NodeRadiance> lights(unseen.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(unseen.size(), [&](std::size_t at) {
         thread_local SurfaceErrors errors;
@@ -92,7 +92,7 @@ IndirectLight NodeLattice::light_surfaces(const NodePaths& paths, const ShareCal
 
 // A few paths from some of the nodes tell where. Where they meet a surface, and no point is near
 // that tells of it, there will be one.
-std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IndirectLight& seen) const {
+std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IrradianceCache& seen) const {
     constexpr int k_step = 3, k_paths = 4;
     constexpr double k_near = 0.1;   // relative to the distance from the camera
     constexpr double k_alike = 0.7;  // cosine between the normals
@@ -106,7 +106,7 @@ std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IndirectLight
     Grid2D<std::vector<Found>> found(columns, rows);
     parallel_for(found.size(), [&](std::size_t at) {
         thread_local std::vector<SurfaceSample> samples;
-        const MultipleNodes::Place from =
+        const RadianceEstimator::Place from =
             place(static_cast<int>(at) % columns * k_step, static_cast<int>(at) / columns * k_step);
         const Point3 camera = estimator_.find_lit_surfaces(from, k_paths, samples);
         for (const SurfaceSample& sample : samples) {
@@ -133,9 +133,9 @@ std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IndirectLight
 }
 
 void NodeLattice::light_water(const NodeWindow& window, const NodePaths& paths,
-                              const IndirectLight& indirect, const ShareCallback& progress) {
+                              const IrradianceCache& indirect, const ShareCallback& progress) {
     double light = 0;
-    for (const MultipleNode& node : raw_) light += node.mean_light;
+    for (const RadianceNode& node : raw_) light += node.mean_light;
     light /= static_cast<double>(raw_.size());
     for_each(window, progress, [&](int i, int j) {
         estimator_.estimate_water(place(i, j), paths, indirect, light, raw_(i, j));
@@ -151,13 +151,13 @@ Grid2D<SmoothNode> NodeLattice::smoothed(const NodeWindow& window,
 
 namespace {
 
-double diffuse_of(const MultipleNode& node) {
+double diffuse_of(const RadianceNode& node) {
     return 0.5 * (node.halves[0].diffuse_mean + node.halves[1].diffuse_mean);
 }
 
-double typical_diffuse(const Grid2D<MultipleNode>& nodes) {
+double typical_diffuse(const Grid2D<RadianceNode>& nodes) {
     double sum = 0, surfaces = 0;
-    for (const MultipleNode& node : nodes) {
+    for (const RadianceNode& node : nodes) {
         if (!node.surface) continue;
         sum += diffuse_of(node);
         ++surfaces;
@@ -168,7 +168,7 @@ double typical_diffuse(const Grid2D<MultipleNode>& nodes) {
 // What the water shows of the surfaces around a node, by the indirect light on them. Much of what
 // it shows in front of a dark one comes from elsewhere: the light is divided by what is typical, if
 // that is more than the node's own.
-double glow_of_diffuse(double lit_indirect, double diffuse, double typical) {
+double halo_of_diffuse(double lit_indirect, double diffuse, double typical) {
     constexpr double k_left = 0.5;  // of the noise by blurring
     const double of_surfaces = std::max(diffuse, typical);
     return of_surfaces > 0 ? k_left * lit_indirect / of_surfaces : 0;
@@ -176,16 +176,16 @@ double glow_of_diffuse(double lit_indirect, double diffuse, double typical) {
 
 // The camera's radiance per indirect light on a node's surface: of the surface itself, and of what
 // water shows of the surfaces around it, on which light is as noisy.
-double light_of_diffuse(const MultipleNode& node, double typical) {
+double light_of_diffuse(const RadianceNode& node, double typical) {
     double lit = 0;
     for (const float light : node.lit_indirect)
         lit += static_cast<double>(light) / static_cast<double>(node.lit_indirect.size());
-    return node.surface_seen + glow_of_diffuse(lit, diffuse_of(node), typical);
+    return node.surface_seen + halo_of_diffuse(lit, diffuse_of(node), typical);
 }
 
 // The indirect light that either half of a node finds on its surface, by band.
-void add_diffuse(const MultipleNode& node, std::span<double> diffuse) {
-    for (const NodeLight& half : node.halves)
+void add_diffuse(const RadianceNode& node, std::span<double> diffuse) {
+    for (const NodeRadiance& half : node.halves)
         for (std::size_t k = 0; k < half.diffuse.size(); ++k)
             diffuse[k % diffuse.size()] += 0.5 * static_cast<double>(half.diffuse[k]);
 }
@@ -231,7 +231,7 @@ void NodeLattice::find_errors(const NodeWindow& window, Grid2D<SmoothNode>& node
     const std::size_t bands = estimator_.bands();
     std::vector<double> typical(bands);
     double surfaces = 0;
-    for (const MultipleNode& node : raw_) {
+    for (const RadianceNode& node : raw_) {
         if (!node.surface) continue;
         add_diffuse(node, typical);
         ++surfaces;
@@ -241,7 +241,7 @@ void NodeLattice::find_errors(const NodeWindow& window, Grid2D<SmoothNode>& node
     parallel_for(window.size(), [&](std::size_t at) {
         const int i = window.i0 + static_cast<int>(at) % columns;
         const int j = window.j0 + static_cast<int>(at) / columns;
-        const MultipleNode& own = raw_(i, j);
+        const RadianceNode& own = raw_(i, j);
         SmoothNode& node = nodes(i, j);
         thread_local std::vector<double> weights, diffuse;
         thread_local ErrorSquares water, of_diffuse, of_glossy, around;
@@ -270,14 +270,14 @@ void NodeLattice::find_errors(const NodeWindow& window, Grid2D<SmoothNode>& node
         water.store(node.water_error);
         of_diffuse.store(node.surface_errors.diffuse);
         of_glossy.store(node.surface_errors.glossy);
-        around.store(node.glow_error);
+        around.store(node.halo_error);
         diffuse.assign(bands, 0.0);
         add_diffuse(own, diffuse);
         for (std::size_t b = 0; b < bands; ++b)
-            node.glow_error[b] *=
+            node.halo_error[b] *=
                 own.lit_indirect.empty()
                     ? 0.0F
-                    : static_cast<float>(glow_of_diffuse(static_cast<double>(own.lit_indirect[b]),
+                    : static_cast<float>(halo_of_diffuse(static_cast<double>(own.lit_indirect[b]),
                                                          diffuse[b], typical[b]));
     });
 }
@@ -297,7 +297,7 @@ constexpr double k_min_cost = 0.05;
 }  // namespace
 
 // Numbers in proportion to the deviation of a path over the root of its cost leave the least error.
-NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
+NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effort) {
     constexpr int k_paths = 64, k_fewest_across = 5, k_max_across = 16;
     constexpr double k_share = 0.05;  // of the paths
     const int across = std::clamp(static_cast<int>(std::sqrt(k_share * effort.paths / k_paths)),
@@ -305,13 +305,13 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
     NodeLattice pilot(estimator, NodeLattice::Positions::amid(estimator.rays(), across));
     const NodePaths few{k_paths, k_paths, k_paths};
     const ShareCallback untold = [](double) {};
-    const IndirectLight indirect = pilot.light_surfaces(few, untold);
+    const IrradianceCache indirect = pilot.light_surfaces(few, untold);
     pilot.light_water(pilot.all(), few, indirect, untold);
     NodePaths paths;
     const auto count = static_cast<double>(pilot.all().size());
-    for (const MultipleNode& node : pilot.raw()) {
-        paths.typical_water += node.guessed_water / count;
-        paths.typical_surface += node.guessed_surface / count;
+    for (const RadianceNode& node : pilot.raw()) {
+        paths.typical_water += node.estimated_water / count;
+        paths.typical_surface += node.estimated_surface / count;
     }
     const double typical = typical_diffuse(pilot.raw());
     double light = 0;
@@ -319,7 +319,7 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
     struct {
         double surface, lit, water;
     } cost{0, 0, 0};  // of all paths of a kind
-    for (const MultipleNode& node : pilot.raw()) {
+    for (const RadianceNode& node : pilot.raw()) {
         const double share = paths.water_share(node), of_its_surface = paths.surface_share(node);
         light += node.mean_light;
         of_lit += node.lit.variance / share;
@@ -346,8 +346,7 @@ NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort) {
         scale = std::min(scale, k_smoothed_variance * work / count / (error * error));
     }
     const auto number = [&](double of_kind) {
-        return static_cast<int>(
-            std::clamp(scale * of_kind, k_fewest_node_paths, k_max_node_paths));
+        return static_cast<int>(std::clamp(scale * of_kind, k_fewest_node_paths, k_max_node_paths));
     };
     // The few that find water close to a lamp are bright, and rare: some show as spots.
     constexpr double k_fewest_in_water = 8;

@@ -2,14 +2,14 @@
 
 #include "core/base/grid2d.h"
 #include "core/base/progress.h"
-#include "core/paths/indirect_light.h"
-#include "core/paths/multiple_nodes.h"
+#include "core/paths/irradiance_cache.h"
 #include "core/paths/node_smoothing.h"
+#include "core/paths/radiance_nodes.h"
 
 namespace uw {
 
-/// Nodes at even steps all over an image (MultipleNodes), and the indirect light on the surfaces
-/// that they see. They depend on the whole image, whatever part of it is rendered.
+/// Nodes at even steps all over an image (RadianceEstimator), and the indirect light on the
+/// surfaces that they see. They depend on the whole image, whatever part of it is rendered.
 class NodeLattice {
   public:
     struct Positions {
@@ -24,19 +24,19 @@ class NodeLattice {
     };
 
     /// `estimator` must outlive this object.
-    NodeLattice(const MultipleNodes& estimator, const Positions& positions);
+    NodeLattice(const RadianceEstimator& estimator, const Positions& positions);
 
     NodeWindow all() const { return {0, 0, raw_.width(), raw_.height()}; }
-    MultipleNodes::Place place(int i, int j) const;
+    RadianceEstimator::Place place(int i, int j) const;
 
     /// Begins all nodes, and returns the light on all surfaces: on those that nodes see, smoothed,
     /// and on those that only paths from them meet.
-    IndirectLight light_surfaces(const NodePaths& paths, const ShareCallback& progress);
+    IrradianceCache light_surfaces(const NodePaths& paths, const ShareCallback& progress);
     /// Adds the water's light to the nodes of a window.
     void light_water(const NodeWindow& window, const NodePaths& paths,
-                     const IndirectLight& indirect, const ShareCallback& progress);
+                     const IrradianceCache& indirect, const ShareCallback& progress);
     /// The nodes as they were estimated.
-    Grid2D<MultipleNode>& raw() { return raw_; }
+    Grid2D<RadianceNode>& raw() { return raw_; }
     /// The nodes with the surfaces' light smoothed, and in `window` the water's.
     Grid2D<SmoothNode> smoothed(const NodeWindow& window, const DistanceIntervals& intervals) const;
     /// Finds the standard errors of these smoothed nodes in a window. They count the noise of the
@@ -48,11 +48,11 @@ class NodeLattice {
     template <class Visit>
     void for_each(const NodeWindow& window, const ShareCallback& progress,
                   const Visit& visit) const;
-    std::vector<SurfaceSample> find_unseen_surfaces(const IndirectLight& seen) const;
+    std::vector<SurfaceSample> find_unseen_surfaces(const IrradianceCache& seen) const;
 
-    const MultipleNodes& estimator_;
+    const RadianceEstimator& estimator_;
     Positions positions_;
-    Grid2D<MultipleNode> raw_;
+    Grid2D<RadianceNode> raw_;
     Grid2D<SmoothNode> smooth_;  // from light_surfaces on, without the water
 };
 
@@ -65,6 +65,6 @@ struct NodeEffort {
 
 /// The numbers of paths that leave the least error for the effort, from a few nodes all over the
 /// image.
-NodePaths plan_paths(const MultipleNodes& estimator, const NodeEffort& effort);
+NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effort);
 
 }  // namespace uw

@@ -11,7 +11,7 @@
 #include "core/base/available_memory.h"
 #include "core/base/parallel.h"
 #include "core/paths/lattice_fit.h"
-#include "core/paths/multiple_nodes.h"
+#include "core/paths/radiance_nodes.h"
 
 namespace uw {
 
@@ -28,7 +28,7 @@ class Neighbourhood {
   public:
     /// `of(index)` is a node's FitNode without its place, or empty if it takes no part.
     template <class Of>
-    void find(const Grid2D<MultipleNode>& raw, int i, int j, const Of& of) {
+    void find(const Grid2D<RadianceNode>& raw, int i, int j, const Of& of) {
         nodes_.clear();
         light_ = weight_ = 0;
         for (const auto& [dx, dy] : steps_by_distance()) {
@@ -83,7 +83,7 @@ class Neighbourhood {
 // The mean of what `of` finds in the nodes around each: the variance of a few batches says little
 // by itself, and that of a whole neighbourhood would hide features of its dark parts.
 template <class Of>
-void average_around(const Grid2D<MultipleNode>& raw, std::size_t at, const Of& of) {
+void average_around(const Grid2D<RadianceNode>& raw, std::size_t at, const Of& of) {
     constexpr int k_reach = k_variance_reach;
     const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
     for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v)
@@ -91,11 +91,11 @@ void average_around(const Grid2D<MultipleNode>& raw, std::size_t at, const Of& o
             of(raw(u, v));
 }
 
-void average_surface_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNode>& nodes) {
+void average_surface_variances(const Grid2D<RadianceNode>& raw, Grid2D<RadianceNode>& nodes) {
     parallel_for(raw.size(), [&](std::size_t at) {
         for (const std::size_t half : {0U, 1U}) {
             double sum = 0, surfaces = 0;
-            average_around(raw, at, [&](const MultipleNode& other) {
+            average_around(raw, at, [&](const RadianceNode& other) {
                 if (!other.surface) return;
                 ++surfaces;
                 sum += other.surface_share * other.halves[half].diffuse_variance;
@@ -108,14 +108,14 @@ void average_surface_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleN
 
 // The water's is in proportion to the weights of its intervals, as that of counts to their
 // expectation, and inverse to the shares of paths.
-void average_water_variances(const Grid2D<MultipleNode>& raw, Grid2D<MultipleNode>& nodes) {
+void average_water_variances(const Grid2D<RadianceNode>& raw, Grid2D<RadianceNode>& nodes) {
     parallel_for(raw.size(), [&](std::size_t at) {
         thread_local std::vector<double> variances, weights;
         for (const std::size_t half : {0U, 1U}) {
             std::vector<float>& of_node = nodes[at].halves[half].water_variance;
             variances.assign(of_node.size(), 0.0);
             weights.assign(of_node.size(), 0.0);
-            average_around(raw, at, [&](const MultipleNode& other) {
+            average_around(raw, at, [&](const RadianceNode& other) {
                 const std::vector<float>& of_other = other.halves[half].water_variance;
                 if (of_other.empty()) return;
                 for (std::size_t k = 0; k < variances.size(); ++k) {
@@ -150,7 +150,7 @@ struct IntervalOfNodes {
     std::array<std::vector<float>, 2> of_half, variances;
     std::vector<float> squares;  // of the difference between the halves, divided as well, by band
 
-    IntervalOfNodes(const Grid2D<MultipleNode>& nodes, const DistanceIntervals& intervals,
+    IntervalOfNodes(const Grid2D<RadianceNode>& nodes, const DistanceIntervals& intervals,
                     std::size_t interval, std::size_t groups, std::size_t bands)
         : reach(nodes.size()),
           weights(nodes.size()),
@@ -161,7 +161,7 @@ struct IntervalOfNodes {
         constexpr float k_min_weight = 1e-30F;
         const std::size_t values = groups * bands;
         for (std::size_t n = 0; n < nodes.size(); ++n) {
-            const MultipleNode& node = nodes[n];
+            const RadianceNode& node = nodes[n];
             reach[n] = reach_into(node, intervals, interval);
             if (reach[n] == NodeReach::none || !(node.mean_weights[interval] >= k_min_weight))
                 continue;
@@ -186,7 +186,7 @@ struct IntervalOfNodes {
 
 class NodeSmoothing {
   public:
-    NodeSmoothing(const Grid2D<MultipleNode>& raw, std::size_t groups, std::size_t bands)
+    NodeSmoothing(const Grid2D<RadianceNode>& raw, std::size_t groups, std::size_t bands)
         : raw_(raw), bands_(bands), values_(groups * bands) {}
 
     /// Adds an interval to a node; false if no node around it reaches so far.
@@ -195,7 +195,7 @@ class NodeSmoothing {
     void smooth_surface(int i, int j, SmoothNode& node) const;
 
   private:
-    const Grid2D<MultipleNode>& raw_;
+    const Grid2D<RadianceNode>& raw_;
     std::size_t bands_, values_;
 };
 
@@ -203,7 +203,7 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
                                  int j, SmoothNode& node) const {
     thread_local LatticeFit fit;
     thread_local Neighbourhood near;
-    const MultipleNode& own = raw_(i, j);
+    const RadianceNode& own = raw_(i, j);
     for (std::size_t half = 0; half < 2; ++half) {
         bool is_reached = false;
         const auto find = [&](NodeReach least) {
@@ -227,7 +227,7 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
         const double tolerance = k_tolerance * near.light() / std::max(shown, 1e-3 * near.weight());
         const std::span<const FitWeight> weights = fit.fit(near.nodes(), tolerance);
         for (const FitWeight& weight : weights) {
-            const MultipleNode& other = raw_[weight.index];
+            const RadianceNode& other = raw_[weight.index];
             const float* water = &other.halves[half].water[interval * values_];
             for (std::size_t k = 0; k < values_; ++k) {
                 const float of_band = other.weights[interval * bands_ + k % bands_];
@@ -247,7 +247,7 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
         if (!own.has_ray || fit.narrower().empty()) continue;
         const auto add_shift = [&](std::span<const FitWeight> weights_of_fit, float sign) {
             for (const FitWeight& weight : weights_of_fit) {
-                const MultipleNode& other = raw_[weight.index];
+                const RadianceNode& other = raw_[weight.index];
                 const float* water = &other.halves[half].water[interval * values_];
                 for (std::size_t k = 0; k < values_; ++k) {
                     const std::size_t b = interval * bands_ + k % bands_;
@@ -268,7 +268,7 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
     thread_local LatticeFit fit;
     thread_local Neighbourhood near;
     thread_local std::vector<float> squares;
-    const MultipleNode& own = raw_(i, j);
+    const RadianceNode& own = raw_(i, j);
     node.surface = own.surface;
     const auto begin = [&](bool is_there, std::vector<float>& light, std::vector<float>& variance) {
         light.assign(is_there ? values_ : 0, 0.0F);
@@ -278,7 +278,7 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
     begin(own.surface->is_glossy, node.light.glossy, node.glossy_variance);
     for (std::size_t half = 0; half < 2; ++half) {
         near.find(raw_, i, j, [&](std::size_t index) -> std::optional<FitNode> {
-            const MultipleNode& other = raw_[index];
+            const RadianceNode& other = raw_[index];
             if (!see_same_surface(own, other)) return std::nullopt;
             FitNode of;
             of.value = other.halves[1 - half].diffuse_mean;
@@ -288,8 +288,8 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
         const double tolerance = k_tolerance * near.light() / std::max(own.surface_seen, 1e-3);
         const std::span<const FitWeight> weights = fit.fit(near.nodes(), tolerance);
         for (const FitWeight& weight : weights) {
-            const MultipleNode& other = raw_[weight.index];
-            const auto add = [&](const std::vector<float> NodeLight::*values,
+            const RadianceNode& other = raw_[weight.index];
+            const auto add = [&](const std::vector<float> NodeRadiance::*values,
                                  std::vector<float>& light, std::vector<float>& variance) {
                 const std::vector<float>& of_half = other.halves[half].*values;
                 for (std::size_t k = 0; k < light.size(); ++k)
@@ -301,8 +301,8 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
                         static_cast<float>(k_variance_of_mean * weight.weight * weight.weight) *
                         squares[b];
             };
-            add(&NodeLight::diffuse, node.light.diffuse, node.diffuse_variance);
-            add(&NodeLight::glossy, node.light.glossy, node.glossy_variance);
+            add(&NodeRadiance::diffuse, node.light.diffuse, node.diffuse_variance);
+            add(&NodeRadiance::glossy, node.light.glossy, node.glossy_variance);
         }
         node.diffuse_shift[half].assign(bands_, 0.0F);
         if (fit.narrower().empty()) continue;
@@ -333,11 +333,11 @@ void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_
                    "leave out the lamps' layers, use fewer bands, or --quality draft");
 }
 
-Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<MultipleNode>& raw, std::size_t groups,
+Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<RadianceNode>& raw, std::size_t groups,
                                      std::size_t bands) {
     Grid2D<SmoothNode> nodes;
     nodes.assign(raw.width(), raw.height());
-    Grid2D<MultipleNode> averaged = raw;
+    Grid2D<RadianceNode> averaged = raw;
     average_surface_variances(raw, averaged);
     const NodeSmoothing smoothing(averaged, groups, bands);
     parallel_for(raw.size(), [&](std::size_t at) {
@@ -348,10 +348,10 @@ Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<MultipleNode>& raw, std::size_
     return nodes;
 }
 
-void smooth_water(const Grid2D<MultipleNode>& raw, const NodeWindow& window,
+void smooth_water(const Grid2D<RadianceNode>& raw, const NodeWindow& window,
                   const DistanceIntervals& intervals, std::size_t groups, std::size_t bands,
                   Grid2D<SmoothNode>& nodes) {
-    Grid2D<MultipleNode> averaged = raw;
+    Grid2D<RadianceNode> averaged = raw;
     average_water_variances(raw, averaged);
     const NodeSmoothing smoothing(averaged, groups, bands);
     const int columns = window.i1 - window.i0;

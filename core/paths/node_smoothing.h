@@ -8,7 +8,7 @@
 #include "core/base/grid2d.h"
 #include "core/paths/distance_intervals.h"
 #include "core/paths/lattice_fit.h"
-#include "core/paths/multiple_nodes.h"
+#include "core/paths/radiance_nodes.h"
 
 namespace uw {
 
@@ -24,7 +24,7 @@ struct SmoothNode {
     /// The distance up to which the water's light is known [m], which may be beyond the node's own
     /// surface; 0: nothing is known.
     double known_to = 0;
-    NodeLight light;  // that of the water divided by IntervalWeights
+    NodeRadiance light;  // that of the water divided by IntervalWeights
     /// The variances that the noise of all nodes around leaves, by band: of the light of the water
     /// on the node's ray, of that on its surface, and of what the surface mirrors.
     std::vector<float> water_variance, diffuse_variance, glossy_variance;
@@ -34,12 +34,12 @@ struct SmoothNode {
     std::array<std::vector<float>, 2> water_shift, diffuse_shift;
     /// Standard errors (NodeLattice::find_errors) by band: of the water's light, divided by the sum
     /// of the ray's IntervalWeights; and of the part of it that indirect light on surfaces makes.
-    std::vector<float> water_error, glow_error;
+    std::vector<float> water_error, halo_error;
     SurfaceErrors surface_errors;
 };
 
 /// Throws InputError if so many nodes, with the copies that smoothing makes, do not fit into free
-/// memory. `groups`: of MultipleNodes.
+/// memory. `groups`: of RadianceEstimator.
 void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_t groups,
                             const LitScene& scene);
 
@@ -58,10 +58,10 @@ struct NodeWindow {
 /// either half of the estimates is chosen by the values and the variances of the other one: if a
 /// half chose its own, a rare bright path would stop the smoothing around it and be counted there
 /// once more, or, if its spread widened it, be smoothed over nodes that are counted less.
-/// `groups`: of MultipleNodes.
-Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<MultipleNode>& raw, std::size_t groups,
+/// `groups`: of RadianceEstimator.
+Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<RadianceNode>& raw, std::size_t groups,
                                      std::size_t bands);
-void smooth_water(const Grid2D<MultipleNode>& raw, const NodeWindow& window,
+void smooth_water(const Grid2D<RadianceNode>& raw, const NodeWindow& window,
                   const DistanceIntervals& intervals, std::size_t groups, std::size_t bands,
                   Grid2D<SmoothNode>& nodes);
 

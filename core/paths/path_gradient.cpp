@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/paths/lamp_guides.h"
+#include "core/paths/guiding_distribution.h"
 
 namespace uw {
 
@@ -16,23 +16,23 @@ Vector3 direction_between(const Point3& from, const Point3& to, const Vector3& o
 
 }  // namespace
 
-int PathGradient::turn(int before, const PathTurn& turn) {
-    if (before == k_no_turn) finish();
+int PathGradient::add_vertex(int before, const PathVertex& vertex) {
+    if (before == k_no_vertex) finish();
     if (count_ == corners_.size()) corners_.emplace_back();
     Corner& corner = corners_[count_];
-    corner.kind = turn.kind;
+    corner.kind = vertex.kind;
     corner.before = before;
-    corner.position = turn.position;
+    corner.position = vertex.position;
     corner.worth.assign(bands_, 0.0);
-    if (before != k_no_turn) {
+    if (before != k_no_vertex) {
         const Corner& from = corners_[static_cast<std::size_t>(before)];
-        corner.in = direction_between(from.position, turn.position, from.in);
+        corner.in = direction_between(from.position, vertex.position, from.in);
     }
     return static_cast<int>(count_++);
 }
 
-void PathGradient::add(const PathTerm& term, std::span<const double> worth) {
-    Corner& from = corners_[static_cast<std::size_t>(term.turn)];
+void PathGradient::add(const PathContribution& term, std::span<const double> worth) {
+    Corner& from = corners_[static_cast<std::size_t>(term.vertex)];
     const Vector3 in = direction_between(from.position, term.place, from.in);
     for (std::size_t b = 0; b < bands_; ++b) from.worth[b] += worth[b];
     add_way(from, term.place, in, worth);
@@ -70,7 +70,7 @@ void PathGradient::finish() {
 void PathGradient::add_way(const Corner& from, const Point3& to, const Vector3& direction,
                            std::span<const double> worth) {
     find_column_weights(worth);
-    if (from.kind == PathTurn::Kind::camera) {
+    if (from.kind == PathVertex::Kind::camera) {
         corners_.front().in = direction;
         if (reach_count_ == reaches_.size()) reaches_.emplace_back();
         Reach& reach = reaches_[reach_count_++];
@@ -79,7 +79,7 @@ void PathGradient::add_way(const Corner& from, const Point3& to, const Vector3& 
         return;
     }
     gradient_.add_column(from.position, to, weights_);
-    if (from.kind == PathTurn::Kind::scattered)
+    if (from.kind == PathVertex::Kind::scattered)
         add_scattering(from.position, from.in, direction, worth);
 }
 

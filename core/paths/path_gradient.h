@@ -6,7 +6,7 @@
 
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
-#include "core/paths/term_gradient.h"
+#include "core/paths/contribution_gradient.h"
 
 namespace uw {
 
@@ -24,7 +24,7 @@ struct GradientTables {
 /// The derivative of a number by the values of a field, from that by the light of paths: the
 /// transpose of PathScores. What terms are worth is handed back along their ways, once for all that
 /// share a stretch of it, and to each place where the field scatters them. For one thread.
-class PathGradient final : public TermGradient {
+class PathGradient final : public ContributionGradient {
   public:
     /// What is referred to must outlive it.
     PathGradient(const GradientTables& tables, FieldGradient& gradient)
@@ -33,14 +33,14 @@ class PathGradient final : public TermGradient {
           bands_(static_cast<std::size_t>(tables.scene.medium->band_count())),
           constituents_(tables.scene.medium->constituents.size()) {}
 
-    int turn(int before, const PathTurn& turn) override;
-    void add(const PathTerm& term, std::span<const double> worth) override;
+    int add_vertex(int before, const PathVertex& vertex) override;
+    void add(const PathContribution& term, std::span<const double> worth) override;
     void finish() override;
 
   private:
     struct Corner {
-        PathTurn::Kind kind = PathTurn::Kind::camera;
-        int before = k_no_turn;
+        PathVertex::Kind kind = PathVertex::Kind::camera;
+        int before = k_no_vertex;
         Point3 position;
         Vector3 in{0, 0, 1};
         std::vector<double> worth;  // by band, of all terms by way of here

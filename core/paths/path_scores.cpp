@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/surface_reflection.h"
-#include "core/paths/lamp_guides.h"
+#include "core/paths/guiding_distribution.h"
 
 namespace uw {
 
@@ -86,15 +86,15 @@ PathScores::Corner& PathScores::add_corner() {
     return corners_[count_++];
 }
 
-int PathScores::turn(int before, const PathTurn& turn) {
+int PathScores::add_vertex(int before, const PathVertex& vertex) {
     which_ = {};
     const auto number = static_cast<int>(count_);
     add_corner();
     Corner& corner = corners_[static_cast<std::size_t>(number)];
     corner.scores.assign(scenes_.changes() * scenes_.bands(), 0.0);
     const Corner* const from =
-        before == k_no_turn ? nullptr : &corners_[static_cast<std::size_t>(before)];
-    place(corner, turn.kind, turn.position, turn.hit, from);
+        before == k_no_vertex ? nullptr : &corners_[static_cast<std::size_t>(before)];
+    place(corner, vertex.kind, vertex.position, vertex.hit, from);
     if (from == nullptr) return number;
     std::ranges::copy(from->scores, corner.scores.begin());
     add_response(*from, corner.in, corner.scores);
@@ -102,13 +102,14 @@ int PathScores::turn(int before, const PathTurn& turn) {
     return number;
 }
 
-void PathScores::find(const PathTerm& term, const EveryFew& which, std::span<double> scores) {
+void PathScores::find(const PathContribution& term, const EveryFew& which,
+                      std::span<double> scores) {
     which_ = which;
-    const Corner& from = corners_[static_cast<std::size_t>(term.turn)];
+    const Corner& from = corners_[static_cast<std::size_t>(term.vertex)];
     const bool is_event = term.hit != nullptr || term.emitter != k_no_emitter;
-    PathTurn::Kind kind = PathTurn::Kind::camera;
+    PathVertex::Kind kind = PathVertex::Kind::camera;
     if (is_event)
-        kind = term.hit != nullptr ? PathTurn::Kind::reflected : PathTurn::Kind::scattered;
+        kind = term.hit != nullptr ? PathVertex::Kind::reflected : PathVertex::Kind::scattered;
     place(last_, kind, term.place, term.hit, &from, term.concentration);
     std::ranges::copy(from.scores, scores.begin());
     add_response(from, last_.in, scores);
@@ -121,7 +122,7 @@ void PathScores::find(const PathTerm& term, const EveryFew& which, std::span<dou
         add_seen_lamp(term.lamp, scores);
 }
 
-void PathScores::place(Corner& corner, PathTurn::Kind kind, const Point3& position,
+void PathScores::place(Corner& corner, PathVertex::Kind kind, const Point3& position,
                        const SurfaceHit* hit, const Corner* before,
                        std::span<const double> concentration) const {
     corner.kind = kind;
@@ -134,7 +135,7 @@ void PathScores::place(Corner& corner, PathTurn::Kind kind, const Point3& positi
     corner.hits.clear();
     corner.concentration.clear();
     const std::vector<Side>& sides = scenes_.sides_;
-    if (kind == PathTurn::Kind::reflected) {
+    if (kind == PathVertex::Kind::reflected) {
         corner.hits.push_back(*hit);
         for (std::size_t i = 1; i < sides.size(); ++i) {
             if (sides[i].has_same_surfaces) continue;
@@ -150,7 +151,7 @@ void PathScores::place(Corner& corner, PathTurn::Kind kind, const Point3& positi
             }
         }
     }
-    if (kind == PathTurn::Kind::scattered && scenes_.constituents_ > 0) {
+    if (kind == PathVertex::Kind::scattered && scenes_.constituents_ > 0) {
         const std::size_t count = scenes_.constituents_;
         for (std::size_t i = 0; i < sides.size(); ++i) {
             if (i > 0 && sides[i].has_same_field) continue;
@@ -236,17 +237,17 @@ void PathScores::add_relative(const Keeps& keeps, const Find& find, std::span<do
 }
 
 void PathScores::add_response(const Corner& corner, const Vector3& out, std::span<double> scores) {
-    if (corner.kind != PathTurn::Kind::scattered && corner.kind != PathTurn::Kind::reflected)
+    if (corner.kind != PathVertex::Kind::scattered && corner.kind != PathVertex::Kind::reflected)
         return;
     add_relative([&](std::size_t change) { return scenes_.keeps_response(change); },
-                 [&](const Side& side, Spectrum& values) { respond(side, corner, out, values); },
+                 [&](const Side& side, Spectrum& values) { eval(side, corner, out, values); },
                  scores);
 }
 
-void PathScores::respond(const Side& side, const Corner& corner, const Vector3& out,
-                         Spectrum& values) {
+void PathScores::eval(const Side& side, const Corner& corner, const Vector3& out,
+                      Spectrum& values) {
     const std::size_t bands = scenes_.bands();
-    if (corner.kind == PathTurn::Kind::reflected) {
+    if (corner.kind == PathVertex::Kind::reflected) {
         const SurfaceHit& on = hit(side, corner);
         const SurfaceSample sample{{corner.position - on.distance * corner.in, corner.in}, on};
         SurfaceReflection(*side.scene.surfaces, sample, static_cast<int>(bands))
@@ -278,16 +279,16 @@ double PathScores::shine(const Side& side, const Corner& corner, std::size_t emi
     const Vector3 to_lamp = lamp.origin(corner.position) - corner.position;
     const double length = glm::length(to_lamp);
     const double aside =
-        corner.kind == PathTurn::Kind::scattered ? lamp.aside({corner.position, corner.in}) : 0;
+        corner.kind == PathVertex::Kind::scattered ? lamp.aside({corner.position, corner.in}) : 0;
     const double radius = std::sqrt(length * length + aside);
     const double light =
         lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) / lamp.spread(radius);
-    respond(side, corner, to_lamp / length, values);
+    eval(side, corner, to_lamp / length, values);
     for (std::size_t b = 0; b < scenes_.bands(); ++b) values[b] *= light * lamp.axis_intensity()[b];
     return radius;
 }
 
-void PathScores::add_lamp(const PathTerm& term, std::span<double> scores) {
+void PathScores::add_lamp(const PathContribution& term, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     Spectrum value, less, more;
     bool has_value = false;
@@ -303,7 +304,7 @@ void PathScores::add_lamp(const PathTerm& term, std::span<double> scores) {
     }
 }
 
-void PathScores::add_depth(const PathTerm& term, std::size_t change, double radius_less,
+void PathScores::add_depth(const PathContribution& term, std::size_t change, double radius_less,
                            double radius_more, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     const Side& less = scenes_.less(change);
@@ -314,7 +315,7 @@ void PathScores::add_depth(const PathTerm& term, std::size_t change, double radi
     const bool is_same = is_field_same && has_same_origin(lamp_less, lamp_more);
     double way = 0;  // with the columns of the lamp's light
     if (!term.columns.empty()) {
-        const Point3& from = corners_[static_cast<std::size_t>(term.turn)].position;
+        const Point3& from = corners_[static_cast<std::size_t>(term.vertex)].position;
         way = distance(from, term.place);
     }
     if (is_same && !term.columns.empty()) {
@@ -328,7 +329,7 @@ void PathScores::add_depth(const PathTerm& term, std::size_t change, double radi
             find_column(more, lamp_more.origin(term.place), term.place, more_);
         if (!term.columns.empty()) {
             if (!is_field_same) {
-                const Point3& from = corners_[static_cast<std::size_t>(term.turn)].position;
+                const Point3& from = corners_[static_cast<std::size_t>(term.vertex)].position;
                 find_column(less, from, term.place, column_);
                 add(less_, column_);
                 find_column(more, from, term.place, column_);

@@ -80,21 +80,21 @@ class PathScores {
 
     /// Forgets all turns.
     void begin() { count_ = 0; }
-    /// PathTerms::turn.
-    int turn(int before, const PathTurn& turn);
+    /// ContributionSink::turn.
+    int add_vertex(int before, const PathVertex& vertex);
     /// Changes `first`, `first + step`, ...: all of them, unless said otherwise.
     struct EveryFew {
         std::size_t first = 0, step = 1;
     };
     /// The scores of a term by these changes, [change * bands + band], in 1 / the number's unit.
-    void find(const PathTerm& term, const EveryFew& which, std::span<double> scores);
+    void find(const PathContribution& term, const EveryFew& which, std::span<double> scores);
 
   private:
     using Side = ChangedScenes::Side;
 
     // One place on a path. Reused storage.
     struct Corner {
-        PathTurn::Kind kind = PathTurn::Kind::camera;
+        PathVertex::Kind kind = PathVertex::Kind::camera;
         Point3 position;
         Vector3 in{0, 0, 1};  // in which the path gets there from the camera
         // By side: those of the scene, then of all others whose field or surfaces are others.
@@ -104,23 +104,23 @@ class PathScores {
     };
     Corner& add_corner();
     // `concentration`: there, if it is not empty.
-    void place(Corner& corner, PathTurn::Kind kind, const Point3& position, const SurfaceHit* hit,
+    void place(Corner& corner, PathVertex::Kind kind, const Point3& position, const SurfaceHit* hit,
                const Corner* before, std::span<const double> concentration = {}) const;
     std::span<const double> concentrations(const Side& side, const Corner& corner) const;
     const SurfaceHit& hit(const Side& side, const Corner& corner) const;
     void add_way(const Point3& from, const Point3& to, std::span<double> scores);
     void add_response(const Corner& corner, const Vector3& out, std::span<double> scores);
-    void add_lamp(const PathTerm& term, std::span<double> scores);
+    void add_lamp(const PathContribution& term, std::span<double> scores);
     void add_emission(const Corner& corner, std::span<double> scores);
     void add_seen_lamp(std::size_t lamp, std::span<double> scores);
-    void respond(const Side& side, const Corner& corner, const Vector3& out, Spectrum& values);
+    void eval(const Side& side, const Corner& corner, const Vector3& out, Spectrum& values);
     // Intensity over distance squared times the response at the corner; returns the distance that
     // the light has come.
     double shine(const Side& side, const Corner& corner, std::size_t emitter, Spectrum& values);
     // Adds what the optical depth of light makes that comes from an emitter, after these distances;
     // of a term with columns, of all its way.
-    void add_depth(const PathTerm& term, std::size_t change, double radius_less, double radius_more,
-                   std::span<double> scores);
+    void add_depth(const PathContribution& term, std::size_t change, double radius_less,
+                   double radius_more, std::span<double> scores);
     Spectrum emission(const Side& side, const Corner& corner) const;
     void find_column(const Side& side, const Point3& from, const Point3& to,
                      std::vector<double>& column) const;

@@ -33,10 +33,10 @@ inline constexpr std::size_t k_no_lamp = std::numeric_limits<std::size_t>::max()
 /// In place of an emitter's: the light is not that of a lamp, or of one that is seen itself.
 inline constexpr std::size_t k_no_emitter = std::numeric_limits<std::size_t>::max();
 /// In place of the number of a turn: there is none before, or nobody keeps them.
-inline constexpr int k_no_turn = -1;
+inline constexpr int k_no_vertex = -1;
 
 /// Where a light path begins or changes its direction, seen from the camera.
-struct PathTurn {
+struct PathVertex {
     enum class Kind : std::uint8_t { camera, scattered, reflected, mirrored };
 
     Kind kind = Kind::camera;  // mirrored: by the water's surface
@@ -45,7 +45,7 @@ struct PathTurn {
 };
 
 /// The light that one light path, or one bundle of them, brings to the camera.
-struct PathTerm {
+struct PathContribution {
     std::size_t lamp = k_no_lamp;  // where it comes from, by index
     int scatterings = 0;           // in the water, on the way
     int reflections = 0;           // by surfaces
@@ -54,8 +54,8 @@ struct PathTerm {
     /// Estimate of the radiance, one value per band of the scene [W m^-2 sr^-1].
     std::span<const double> radiance;
 
-    // Its way, for those who were told of its turns (PathTerms::turn):
-    int turn = k_no_turn;                // the last before `place`
+    // Its way, for those who were told of its turns (ContributionSink::turn):
+    int vertex = k_no_vertex;            // the last before `place`
     Point3 place{};                      // of its last event: scattered, reflected or emitted
     const SurfaceHit* hit = nullptr;     // there; null in the water
     std::size_t emitter = k_no_emitter;  // which of LitScene::emitters lights it
@@ -65,23 +65,23 @@ struct PathTerm {
 };
 
 /// Receives the terms of a path one by one. Their sum is an unbiased estimate.
-class PathTerms {
+class ContributionSink {
   public:
-    virtual ~PathTerms() = default;
-    virtual void add(const PathTerm& term) = 0;
-    /// Is told of each turn of a path, after the one with the number `before` and before the terms
+    virtual ~ContributionSink() = default;
+    virtual void add(const PathContribution& term) = 0;
+    /// Is told of each turn of a path, after the one with the number `before` and before the sink
     /// that come by way of it. Returns its number. Most need not know.
-    virtual int turn(int /*before*/, const PathTurn& /*turn*/) { return k_no_turn; }
+    virtual int add_vertex(int /*before*/, const PathVertex& /*vertex*/) { return k_no_vertex; }
 };
 
 /// What a path from the camera has done up to its current segment.
 struct PathState {
     Spectrum throughput;  // radiance at the camera per radiance that arrives along the segment
     int scatterings = 0, reflections = 0;
-    bool from_water = false;  // where it first turned, seen from the camera
-    double distance = 0;      // and how far along the camera ray [m]
-    double branches = 1;      // into how many it has split
-    int turn = k_no_turn;     // the last
+    bool from_water = false;   // where it first turned, seen from the camera
+    double distance = 0;       // and how far along the camera ray [m]
+    double splitting = 1;      // into how many it has split
+    int vertex = k_no_vertex;  // the last
     /// The surface that it was reflected by last, and what that reflects, roughly.
     struct LeftSurface {
         Point3 position;
@@ -90,14 +90,14 @@ struct PathState {
     } left;
 
     /// A term of light that arrives along the segment.
-    PathTerm term(std::size_t lamp, std::span<const double> radiance) const {
+    PathContribution contribution(std::size_t lamp, std::span<const double> radiance) const {
         return {.lamp = lamp,
                 .scatterings = scatterings,
                 .reflections = reflections,
                 .from_water = from_water,
                 .distance = distance,
                 .radiance = radiance,
-                .turn = turn};
+                .vertex = vertex};
     }
 };
 
@@ -185,12 +185,12 @@ struct CameraSegment {
     /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
     std::vector<double> distances, cumulative;
     /// Rough means over the bands, which guide the paths.
-    struct Light {
-        double own = 0;         // the ray's radiance, without single scattering
+    struct Expected {
+        double pixel = 0;       // the ray's radiance, without single scattering
         double ambient = 0;     // what a path may meet anywhere
-        double of_surface = 0;  // the part of `own` that comes straight from the surface
+        double of_surface = 0;  // the part of `pixel` that comes straight from the surface
         bool is_known = true;   // false: they stand for nothing but each other
-    } light;
+    } expected;
     /// The mean numbers of paths of each kind that are traced in place of one: fewer where they
     /// bring less of the ray's light than others.
     PathCounts paths;

@@ -7,8 +7,8 @@
 #include "core/base/spectrum.h"
 #include "core/light/integrator.h"
 #include "core/light/lamp.h"
-#include "core/paths/lamp_gathering.h"
-#include "core/paths/lamp_guides.h"
+#include "core/paths/guiding_distribution.h"
+#include "core/paths/next_event_estimator.h"
 #include "core/paths/path_segment.h"
 #include "core/paths/scattering_tables.h"
 
@@ -30,13 +30,13 @@ std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters);
 struct PathTables {
     WaterOptics optics;
     const ScatteringTables& scattering;
-    LampGathering lamps;
-    GuideTables guides;
+    NextEventEstimator lamps;
+    GuidingTables guides;
     Spectrum light;   // of all lamps on their axes, or 1 where there is none
     Spectrum albedo;  // the greatest of all the water may hold, at least 0.1: guides paths
 
-    /// `scene`: with one emitter per lamp. `deep_shadows` and `emitters`: as LampGathering takes
-    /// them. What is referred to must outlive this object.
+    /// `scene`: with one emitter per lamp. `deep_shadows` and `emitters`: as NextEventEstimator
+    /// takes them. What is referred to must outlive this object.
     PathTables(const LitScene& scene, const ScatteringTables& tables,
                std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                std::vector<std::size_t> emitters);

@@ -7,8 +7,8 @@
 #include "core/base/error.h"
 #include "core/base/numerics.h"
 #include "core/light/ray_panels.h"
-#include "core/paths/indirect_light.h"
-#include "core/paths/lamp_gathering.h"
+#include "core/paths/irradiance_cache.h"
+#include "core/paths/next_event_estimator.h"
 #include "core/paths/path_tables.h"
 #include "core/paths/path_walk.h"
 #include "core/paths/scattering_tables.h"
@@ -38,7 +38,7 @@ struct Workspace {
     WaterPoint point;
     std::vector<LampPassage> passages;  // of the lamps
     std::vector<double> guided, plain;
-    LampGuides guides;
+    GuidingDistribution guides;
 };
 
 Workspace& workspace_of_thread() {
@@ -46,8 +46,8 @@ Workspace& workspace_of_thread() {
     return workspace;
 }
 
-int begin_path(const CameraSegment& segment, PathTerms& terms) {
-    return terms.turn(k_no_turn, {PathTurn::Kind::camera, segment.water.ray.origin});
+int begin_path(const CameraSegment& segment, ContributionSink& sink) {
+    return sink.add_vertex(k_no_vertex, {PathVertex::Kind::camera, segment.water.ray.origin});
 }
 
 }  // namespace
@@ -144,9 +144,9 @@ void PathTracer::place_intervals(CameraSegment& segment) const {
 
 // The radiance of the segment's surface, by band: what is known of it, and what the lamps' field
 // lets expect. Returns the mean of that as it arrives at the camera.
-double PathTracer::guess_surface_light(const CameraSegment& segment,
-                                       std::span<const double> surface_light,
-                                       Spectrum& light) const {
+double PathTracer::estimate_surface_light(const CameraSegment& segment,
+                                          std::span<const double> surface_light,
+                                          Spectrum& light) const {
     const PathTables& tables = *tables_.front();
     const std::size_t bands = tables.optics.bands();
     light = {};
@@ -154,8 +154,8 @@ double PathTracer::guess_surface_light(const CameraSegment& segment,
     if (!segment.water.has_hit) return 0;
     double all = 0;
     for (const double value : segment.transmittance.first(bands)) all += value;
-    const double guess = guessed_reflection(tables.guides, segment.water.hit,
-                                            all > 0 ? segment.transmittance : tables.light);
+    const double guess = estimated_reflection(tables.guides, segment.water.hit,
+                                              all > 0 ? segment.transmittance : tables.light);
     double arriving = 0;
     for (std::size_t b = 0; b < bands; ++b) {
         light[b] = std::max(light[b], guess);
@@ -176,7 +176,7 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     // Light of the sky that is scattered is that of lamps.
     const bool has_surface = water.has_hit && !water.hit.is_water_surface && !surface_light.empty();
     const double reflected =
-        has_surface ? guess_surface_light(segment, surface_light, light_of_surface) : 0;
+        has_surface ? estimate_surface_light(segment, surface_light, light_of_surface) : 0;
     w.guided.clear();
     w.plain.clear();
     double sum_guided = 0, sum_plain = 0, of_water = 0;
@@ -219,23 +219,24 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
         sum_plain += w.plain.back();
     }
     const double per_band = 1 / static_cast<double>(bands);
-    segment.light = {};
+    segment.expected = {};
     for (std::size_t b = 0; b < bands; ++b) {
-        segment.light.of_surface += light_of_surface[b] * segment.transmittance[b] * per_band;
-        segment.light.ambient += k_ambient_share * light_of_surface[b] * per_band;
+        segment.expected.of_surface += light_of_surface[b] * segment.transmittance[b] * per_band;
+        segment.expected.ambient += k_ambient_share * light_of_surface[b] * per_band;
     }
-    segment.light.own = sum_guided * per_band + segment.light.of_surface;
-    segment.light.ambient = std::max(segment.light.ambient, k_min_ambient * segment.light.own);
+    segment.expected.pixel = sum_guided * per_band + segment.expected.of_surface;
+    segment.expected.ambient =
+        std::max(segment.expected.ambient, k_min_ambient * segment.expected.pixel);
     segment.paths = {};
-    if (segment.light.own > 0) {
-        segment.paths.water = std::clamp(k_paths_of_share * of_water * per_band / segment.light.own,
-                                         k_min_paths, 1.0);
+    if (segment.expected.pixel > 0) {
+        segment.paths.water = std::clamp(
+            k_paths_of_share * of_water * per_band / segment.expected.pixel, k_min_paths, 1.0);
         if (has_surface)
             segment.paths.surface =
-                std::clamp(k_paths_of_share * reflected / segment.light.own, k_min_paths, 1.0);
+                std::clamp(k_paths_of_share * reflected / segment.expected.pixel, k_min_paths, 1.0);
     } else {
         // Nothing is known of it, as where only emission lights the scene: by throughput alone.
-        segment.light = {.own = 1, .ambient = 1 / k_ambient_beyond, .is_known = false};
+        segment.expected = {.pixel = 1, .ambient = 1 / k_ambient_beyond, .is_known = false};
     }
     segment.cumulative.clear();
     if (!(sum_plain > 0)) return;
@@ -249,13 +250,13 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
 }
 
 void PathTracer::trace_single(const CameraSegment& segment, PathRandom& random,
-                              PathTerms& terms) const {
+                              ContributionSink& sink) const {
     const PathTables& tables = choose_tables(random);
     PathState state;
     for (double& value : state.throughput.first(tables.optics.bands())) value = 1;
     state.from_water = true;
-    state.turn = begin_path(segment, terms);
-    tables.lamps.gather_from_water(segment.water, state, random, terms);
+    state.vertex = begin_path(segment, sink);
+    tables.lamps.estimate_in_scatter(segment.water, state, random, sink);
 }
 
 namespace {
@@ -276,7 +277,7 @@ double trace_paths(double mean, PathRandom& random, const Trace& trace) {
 
 // A first scattering where the segment's light guides it.
 double PathTracer::trace_water_path(const CameraSegment& segment, PathRandom& random,
-                                    PathTerms& terms) const {
+                                    ContributionSink& sink) const {
     const PathTables& tables = choose_tables(random);
     double u = random.next();
     Workspace& w = workspace_of_thread();
@@ -288,9 +289,9 @@ double PathTracer::trace_water_path(const CameraSegment& segment, PathRandom& ra
     const WaterOptics& optics = tables.optics;
     optics.look_up(segment.water, s, w.point);
     optics.find_scattering(w.point);
-    CameraSegment::Light light = segment.light;
-    light.own /= std::max(1.0, segment.paths.water);
-    PathWalk walk(tables, light, random, terms);
+    CameraSegment::Expected expected = segment.expected;
+    expected.pixel /= std::max(1.0, segment.paths.water);
+    PathWalk walk(tables, expected, random, sink);
     walk.stay_in_water();
     PathState& state = walk.state();
     optics.transmittances(s, w.point.column, state.throughput);
@@ -298,16 +299,16 @@ double PathTracer::trace_water_path(const CameraSegment& segment, PathRandom& ra
         value *= length / (interval.probability * segment.paths.water);
     state.from_water = true;
     state.distance = s;
-    state.turn = begin_path(segment, terms);
+    state.vertex = begin_path(segment, sink);
     walk.from_water(segment.water, w.point);
     return walk.work();
 }
 
 double PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
-                               PathTerms& terms) const {
+                               ContributionSink& sink) const {
     if (segment.cumulative.empty()) return 0;
     return trace_paths(segment.paths.water, random,
-                       [&] { return trace_water_path(segment, random, terms); });
+                       [&] { return trace_water_path(segment, random, sink); });
 }
 
 void CameraSegment::multiply_paths(const PathCounts& times) {
@@ -321,47 +322,47 @@ void CameraSegment::multiply_paths(const PathCounts& times) {
 
 namespace {
 
-class NoTerms final : public PathTerms {
+class NoContributions final : public ContributionSink {
   public:
-    void add(const PathTerm&) override {}
+    void add(const PathContribution&) override {}
 };
 
 PathWalk walk_into_water(const PathTables& tables, const CameraSegment& segment, PathRandom& random,
-                         PathTerms& terms) {
-    CameraSegment::Light light = segment.light;
-    light.own /= std::max(1.0, segment.paths.lit);
-    PathWalk walk(tables, light, random, terms);
+                         ContributionSink& sink) {
+    CameraSegment::Expected expected = segment.expected;
+    expected.pixel /= std::max(1.0, segment.paths.lit);
+    PathWalk walk(tables, expected, random, sink);
     for (double& value : walk.state().throughput.first(tables.optics.bands()))
         value = 1 / segment.paths.lit;
     walk.state().from_water = true;
-    walk.state().turn = begin_path(segment, terms);
+    walk.state().vertex = begin_path(segment, sink);
     return walk;
 }
 
 }  // namespace
 
 double PathTracer::trace_lit_surfaces(const CameraSegment& segment, PathRandom& random,
-                                      PathTerms& terms) const {
+                                      ContributionSink& sink) const {
     return trace_paths(segment.paths.lit, random, [&] {
-        PathWalk walk = walk_into_water(choose_tables(random), segment, random, terms);
-        if (walk.wander(segment.water)) walk.gather_lit_surface();
+        PathWalk walk = walk_into_water(choose_tables(random), segment, random, sink);
+        if (walk.wander(segment.water)) walk.trace_lit_surface();
         return walk.work();
     });
 }
 
-double PathTracer::trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
-                                      PathRandom& random, PathTerms& terms) const {
+double PathTracer::trace_lit_surfaces(const CameraSegment& segment, const IrradianceCache& indirect,
+                                      PathRandom& random, ContributionSink& sink) const {
     return trace_paths(segment.paths.lit, random, [&] {
-        PathWalk walk = walk_into_water(choose_tables(random), segment, random, terms);
-        if (walk.wander(segment.water)) walk.gather_lit_surface(indirect);
+        PathWalk walk = walk_into_water(choose_tables(random), segment, random, sink);
+        if (walk.wander(segment.water)) walk.trace_lit_surface(indirect);
         return walk.work();
     });
 }
 
 bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& random,
                                   SurfaceSample& sample) const {
-    NoTerms terms;
-    PathWalk walk = walk_into_water(*tables_.front(), segment, random, terms);
+    NoContributions sink;
+    PathWalk walk = walk_into_water(*tables_.front(), segment, random, sink);
     const WaterSegment* end = walk.wander(segment.water);
     if (end) {
         sample.ray = end->ray;
@@ -371,23 +372,23 @@ bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& rand
 }
 
 double PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,
-                                 PathTerms& terms) const {
+                                 ContributionSink& sink) const {
     if (!segment.water.has_hit || segment.water.hit.is_water_surface) return 0;
     return trace_paths(segment.paths.surface, random, [&] {
         const PathTables& tables = choose_tables(random);
-        PathWalk walk(tables, segment.light, random, terms);
+        PathWalk walk(tables, segment.expected, random, sink);
         PathState& state = walk.state();
         for (std::size_t b = 0; b < tables.optics.bands(); ++b)
             state.throughput[b] = segment.transmittance[b] / segment.paths.surface;
         state.distance = segment.water.length;
-        state.turn = begin_path(segment, terms);
+        state.vertex = begin_path(segment, sink);
         walk.from_surface(segment.water);
         return walk.work();
     });
 }
 
 void PathTracer::trace_mirrored(const SurfaceSample& sample, PathRandom& random,
-                                PathTerms& terms) const {
+                                ContributionSink& sink) const {
     thread_local WaterSegment segment;
     segment.ray = sample.ray;
     segment.length = sample.hit.distance;
@@ -395,7 +396,7 @@ void PathTracer::trace_mirrored(const SurfaceSample& sample, PathRandom& random,
     segment.hit = sample.hit;
     const PathTables& tables = choose_tables(random);
     // Something may shine from everywhere, even where there is no lamp.
-    PathWalk walk(tables, {.own = 1, .ambient = 1}, random, terms);
+    PathWalk walk(tables, {.pixel = 1, .ambient = 1}, random, sink);
     PathState& state = walk.state();
     for (double& value : state.throughput.first(tables.optics.bands())) value = 1;
     state.distance = sample.hit.distance;

@@ -12,7 +12,7 @@
 
 namespace uw {
 
-class IndirectLight;
+class IrradianceCache;
 struct LampView;
 struct PathTables;
 struct ScatteringTables;
@@ -42,43 +42,48 @@ class PathTracer {
                CameraSegment& segment) const;
 
     /// The light of lamps that the water scatters once, towards the camera.
-    void trace_single(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    void trace_single(const CameraSegment& segment, PathRandom& random,
+                      ContributionSink& sink) const;
 
     // Three kinds of paths, as many as CameraSegment::paths says. They return what work it was:
     // roughly the number of vertices at which a direction was chosen by all that is known.
 
     /// The light that the water scatters towards the camera, of `multiple.volume`, which no surface
     /// has reflected or emitted.
-    double trace_water(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    double trace_water(const CameraSegment& segment, PathRandom& random,
+                       ContributionSink& sink) const;
     /// And that of surfaces, which the water scatters on its way to the camera.
     double trace_lit_surfaces(const CameraSegment& segment, PathRandom& random,
-                              PathTerms& terms) const;
+                              ContributionSink& sink) const;
     /// The same. `indirect`: the light on the first of the surfaces that is not direct, by lamp or
     /// all in one; from glossy ones paths go on.
-    double trace_lit_surfaces(const CameraSegment& segment, const IndirectLight& indirect,
-                              PathRandom& random, PathTerms& terms) const;
+    double trace_lit_surfaces(const CameraSegment& segment, const IrradianceCache& indirect,
+                              PathRandom& random, ContributionSink& sink) const;
     /// The first surface that such a path meets, and the path's last ray; false if it meets none.
     bool find_lit_surface(const CameraSegment& segment, PathRandom& random,
                           SurfaceSample& sample) const;
     /// The light that the segment's surface reflects, other than direct light of lamps, and not
     /// what it emits: `multiple.surface`. Nothing without a surface.
-    double trace_surface(const CameraSegment& segment, PathRandom& random, PathTerms& terms) const;
+    double trace_surface(const CameraSegment& segment, PathRandom& random,
+                         ContributionSink& sink) const;
     /// Traces the part of trace_surface's light that was scattered or reflected once, or emitted,
     /// before the sample reflects it. It is the light at the surface itself, not dimmed by the
     /// water in front of it.
-    void trace_mirrored(const SurfaceSample& sample, PathRandom& random, PathTerms& terms) const;
+    void trace_mirrored(const SurfaceSample& sample, PathRandom& random,
+                        ContributionSink& sink) const;
     /// Whether a term of trace_surface is one of trace_mirrored.
-    static bool is_mirrored(const PathTerm& term) {
-        return term.scatterings + term.reflections == (term.lamp == k_no_lamp ? 1 : 2);
+    static bool is_mirrored(const PathContribution& contribution) {
+        return contribution.scatterings + contribution.reflections ==
+               (contribution.lamp == k_no_lamp ? 1 : 2);
     }
 
   private:
     const PathTables& choose_tables(PathRandom& random) const;
     double trace_water_path(const CameraSegment& segment, PathRandom& random,
-                            PathTerms& terms) const;
+                            ContributionSink& sink) const;
     void place_intervals(CameraSegment& segment) const;
-    double guess_surface_light(const CameraSegment& segment, std::span<const double> surface_light,
-                               Spectrum& light) const;
+    double estimate_surface_light(const CameraSegment& segment,
+                                  std::span<const double> surface_light, Spectrum& light) const;
     void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 
     std::shared_ptr<const ScatteringTables> scattering_;

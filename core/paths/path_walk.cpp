@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/paths/indirect_light.h"
+#include "core/paths/irradiance_cache.h"
 
 namespace uw {
 
@@ -18,10 +18,10 @@ constexpr double k_ambient_of_direction = 0.05;
 constexpr double k_ambient_of_place = 0.02, k_ambient_of_surface = 0.03;
 // What is expected of a path after all, relative to what its direction was chosen for.
 constexpr double k_min_expected = 0.2;
-// The branches of one vertex, and of a path in all.
-constexpr double k_max_branches_of_vertex = 8, k_max_branches_of_path = 64;
+// The branches of one sampler, and of a path in all.
+constexpr double k_max_splitting_of_vertex = 8, k_max_splitting_of_path = 64;
 // Where nothing is known of the light, and after many vertices, fewer paths go on than arrive.
-constexpr double k_survival_of_unknown = 0.97, k_survival_of_long = 0.9;
+constexpr double k_max_survival_where_unknown = 0.97, k_max_survival_of_long = 0.9;
 constexpr int k_long = 100;
 constexpr int k_places = 3;
 // None is guessed far darker than the mean: what shines there after all would be too bright.
@@ -39,7 +39,7 @@ constexpr double k_offset = 4e-7;
 
 // The index of the weight that the running sum of `weights` reaches `target` with.
 template <class Range, class Weight>
-std::size_t find_weight(const Range& range, double target, const Weight& weight) {
+std::size_t sample_discrete(const Range& range, double target, const Weight& weight) {
     std::size_t i = 0;
     while (i + 1 < range.size() && target >= weight(range[i])) target -= weight(range[i++]);
     return i;
@@ -59,28 +59,28 @@ PathWalk::Workspace& PathWalk::workspace_of_thread() {
 }
 
 void PathWalk::from_water(const WaterSegment& segment, const WaterPoint& point) {
-    PathVertex& vertex = workspace_of_thread().vertex;
+    DirectionSampler& sampler = workspace_of_thread().sampler;
     const Point3 x = segment.ray.at(point.distance);
-    vertex.scatter(tables_.guides, x, segment.ray.direction, point, state_.throughput);
+    sampler.scatter(tables_.guides, x, segment.ray.direction, point, state_.throughput);
     ++state_.scatterings;
-    turn(PathTurn::Kind::scattered, x);
+    add_vertex(PathVertex::Kind::scattered, x);
     follow(leave(x));
 }
 
 // As thorough as its light is worth by itself.
 void PathWalk::from_surface(const WaterSegment& segment) {
-    const double radiance = guessed_reflection(tables_.guides, segment.hit, state_.throughput);
+    const double radiance = estimated_reflection(tables_.guides, segment.hit, state_.throughput);
     if (radiance > 0)
-        light_ = {.own = arriving(radiance), .ambient = k_ambient_of_reflection * radiance};
-    workspace_of_thread().vertex.reflect(tables_.guides, segment, state_.throughput);
+        expected_ = {.pixel = arriving(radiance), .ambient = k_ambient_of_reflection * radiance};
+    workspace_of_thread().sampler.reflect(tables_.guides, segment, state_.throughput);
     state_.left = {segment.hit.position, segment.hit.geometric_normal, radiance};
     ++state_.reflections;
-    turn(PathTurn::Kind::reflected, segment.hit.position, &segment.hit);
+    add_vertex(PathVertex::Kind::reflected, segment.hit.position, &segment.hit);
     follow(leave(above(segment.hit)));
 }
 
-void PathWalk::turn(PathTurn::Kind kind, const Point3& position, const SurfaceHit* hit) {
-    state_.turn = terms_.turn(state_.turn, {kind, position, hit});
+void PathWalk::add_vertex(PathVertex::Kind kind, const Point3& position, const SurfaceHit* hit) {
+    state_.vertex = sink_.add_vertex(state_.vertex, {kind, position, hit});
 }
 
 // What is reflected along the path, as it arrives at the camera: the mean over the bands.
@@ -91,50 +91,50 @@ double PathWalk::arriving(double radiance) const {
     return throughput / static_cast<double>(bands) * radiance;
 }
 
-void PathWalk::from_surface_by_worth(const WaterSegment& segment) {
-    constexpr double k_min_worth = 0.3, k_max_worth = 4;
+void PathWalk::split_at_surface(const WaterSegment& segment) {
+    constexpr double k_min_splitting = 0.3, k_max_splitting = 4;
     Workspace& w = workspace_of_thread();
     const double light =
-        arriving(guessed_reflection(tables_.guides, segment.hit, state_.throughput) +
-                 k_ambient_beyond * light_.ambient);
-    const double n = std::clamp(light / light_.own, k_min_worth, k_max_worth);
+        arriving(estimated_reflection(tables_.guides, segment.hit, state_.throughput) +
+                 k_ambient_beyond * expected_.ambient);
+    const double n = std::clamp(light / expected_.pixel, k_min_splitting, k_max_splitting);
     const int count = static_cast<int>(n + random_.next());
     if (count == 0) return;
     for (double& value : state_.throughput.first(tables_.optics.bands())) value /= n;
     w.first_segment = segment;
     const PathState state = state_;
-    const CameraSegment::Light pixel = light_;
+    const CameraSegment::Expected pixel = expected_;
     for (int i = 0; i < count; ++i) {
         state_ = state;
-        light_ = pixel;
+        expected_ = pixel;
         from_surface(w.first_segment);
     }
 }
 
 void PathWalk::mirror(const WaterSegment& segment) {
-    workspace_of_thread().vertex.reflect(tables_.guides, segment, state_.throughput);
+    workspace_of_thread().sampler.reflect(tables_.guides, segment, state_.throughput);
     ++state_.reflections;
-    turn(PathTurn::Kind::reflected, segment.hit.position, &segment.hit);
+    add_vertex(PathVertex::Kind::reflected, segment.hit.position, &segment.hit);
     leave(above(segment.hit), true);
 }
 
 bool PathWalk::leave(const Point3& origin, bool is_last) {
     Workspace& w = workspace_of_thread();
-    const PathVertex& vertex = w.vertex;
+    const DirectionSampler& sampler = w.sampler;
     const std::size_t bands = tables_.optics.bands();
     ++work_;
-    const double sum = vertex.draw_candidates(random_, expected_from(origin), w.candidates);
+    const double sum = sampler.sample_candidates(random_, expected_from(origin), w.candidates);
     const double of_candidate = random_.next(), of_number = random_.next();
     if (!(sum > 0)) return false;
-    const CandidateDirection chosen = w.candidates[find_weight(
+    const DirectionCandidate chosen = w.candidates[sample_discrete(
         w.candidates, of_candidate * sum, [](const auto& each) { return each.weight(); })];
     Spectrum response;
-    vertex.respond(chosen.direction, response);
-    const double factor = sum / (chosen.responds * chosen.light);
+    sampler.eval(chosen.direction, response);
+    const double factor = sum / (chosen.response * chosen.light);
     for (std::size_t b = 0; b < bands; ++b) state_.throughput[b] *= response[b] * factor;
     const Ray ray{origin, chosen.direction};
     trace(ray);
-    gather_from_segment();
+    estimate_next_event();
     if (is_last) {
         if (!meets_water_surface()) return false;
         const double reflectance = reflectance_of_water_surface();
@@ -143,21 +143,21 @@ bool PathWalk::leave(const Point3& origin, bool is_last) {
         follow_mirrored();
         return false;
     }
-    w.guides = &vertex.guides();
+    w.guides = &sampler.guides();
     find_surface_ahead();
-    const double n = branches(chosen);
+    const double n = splitting_factor(chosen);
     if (!(of_number < n)) return false;
     for (double& value : state_.throughput.first(bands)) value /= n;
-    state_.branches *= n;
+    state_.splitting *= n;
     for (double i = of_number + 1; i < n; ++i) w.pending.push_back({state_, ray});
     return true;
 }
 
-void PathWalk::gather_from_segment() {
+void PathWalk::estimate_next_event() {
     const Workspace& w = workspace_of_thread();
-    tables_.lamps.gather_from_water(w.segment, state_, random_, terms_);
+    tables_.lamps.estimate_in_scatter(w.segment, state_, random_, sink_);
     if (!w.segment.has_hit || stays_in_water_ || meets_water_surface()) return;
-    tables_.lamps.gather_from_surface(w.segment, w.transmittance, state_, random_, terms_);
+    tables_.lamps.estimate_direct_light(w.segment, w.transmittance, state_, random_, sink_);
     if (w.segment.hit.has_material) find_emission(state_.throughput);
 }
 
@@ -179,18 +179,18 @@ double PathWalk::reflectance_of_water_surface() const {
 }
 
 void PathWalk::follow_mirrored() {
-    turn(PathTurn::Kind::mirrored, workspace_of_thread().segment.hit.position);
+    add_vertex(PathVertex::Kind::mirrored, workspace_of_thread().segment.hit.position);
     trace(mirrored_ray());
-    gather_from_segment();
+    estimate_next_event();
 }
 
 // The surface that the path has left may be met again: all that is below its plane.
-ExpectedLight PathWalk::expected_from(const Point3& x) const {
-    ExpectedLight expected{.ambient = k_ambient_of_direction * light_.ambient};
+ExpectedRadiance PathWalk::expected_from(const Point3& x) const {
+    ExpectedRadiance expected{.ambient = k_ambient_of_direction * expected_.ambient};
     const PathState::LeftSurface& left = state_.left;
     // The water's surface shows all of it again.
     if (tables_.optics.scene().water_surface)
-        expected.ambient += k_share_in_mirror * std::max(left.radiance, light_.own);
+        expected.ambient += k_share_in_mirror * std::max(left.radiance, expected_.pixel);
     const double height = glm::dot(x - left.position, left.normal);
     if (!(left.radiance > 0) || !(height > 0) || stays_in_water_) return expected;
     const WaterOptics& optics = tables_.optics;
@@ -201,21 +201,21 @@ ExpectedLight PathWalk::expected_from(const Point3& x) const {
 }
 
 // As many as what is expected from the chosen direction is worth, relative to the pixel's light.
-double PathWalk::branches(const CandidateDirection& chosen) const {
+double PathWalk::splitting_factor(const DirectionCandidate& chosen) const {
     const Workspace& w = workspace_of_thread();
     const std::size_t bands = tables_.optics.bands();
     double throughput = 0;
     for (const double value : state_.throughput.first(bands)) throughput += value;
     const double expected =
         std::max(throughput * (w.guides->multiple(chosen.direction) + chosen.of_particles +
-                               k_ambient_beyond * light_.ambient) +
+                               k_ambient_beyond * expected_.ambient) +
                      w.surface_ahead,
                  throughput * k_min_expected * chosen.light);
-    double n =
-        std::min(expected / (light_.own * static_cast<double>(bands)), k_max_branches_of_vertex);
-    n = std::min(n, k_max_branches_of_path / state_.branches);
-    if (w.guides->all().empty()) n = std::min(n, k_survival_of_unknown);
-    if (state_.scatterings + state_.reflections > k_long) n = std::min(n, k_survival_of_long);
+    double n = std::min(expected / (expected_.pixel * static_cast<double>(bands)),
+                        k_max_splitting_of_vertex);
+    n = std::min(n, k_max_splitting_of_path / state_.splitting);
+    if (w.guides->all().empty()) n = std::min(n, k_max_survival_where_unknown);
+    if (state_.scatterings + state_.reflections > k_long) n = std::min(n, k_max_survival_of_long);
     return n;
 }
 
@@ -236,8 +236,8 @@ void PathWalk::find_surface_ahead() {
         w.surface_ahead = arrived * w.surface_radiance;
         return;
     }
-    w.surface_radiance = std::max(k_ambient_of_surface * light_.ambient,
-                                  guessed_reflection(tables_.guides, w.segment.hit, arriving));
+    w.surface_radiance = std::max(k_ambient_of_surface * expected_.ambient,
+                                  estimated_reflection(tables_.guides, w.segment.hit, arriving));
     w.surface_ahead = arrived * w.surface_radiance;
 }
 
@@ -252,9 +252,9 @@ void PathWalk::find_emission(const Spectrum& throughput) {
         light += throughput[b] * material.emission[b];
         emission += material.emission[b];
     }
-    light_.own = std::max(light_.own, light / static_cast<double>(bands));
-    light_.ambient =
-        std::max(light_.ambient, emission / (k_ambient_beyond * static_cast<double>(bands)));
+    expected_.pixel = std::max(expected_.pixel, light / static_cast<double>(bands));
+    expected_.ambient =
+        std::max(expected_.ambient, emission / (k_ambient_beyond * static_cast<double>(bands)));
 }
 
 // What the water's surface mirrors, roughly: scattered light, and the next surface. There may be
@@ -267,11 +267,11 @@ double PathWalk::radiance_in_mirror(const Spectrum& throughput) {
     double radiance =
         w.guides_at_water_surface.multiple(mirrored.direction) +
         tables_.guides.particles.at(mirrored.origin) +
-        std::max(k_ambient_of_direction * light_.ambient, k_min_in_mirror * light_.own);
+        std::max(k_ambient_of_direction * expected_.ambient, k_min_in_mirror * expected_.pixel);
     SurfaceHit hit;
     if (optics.scene().surfaces->closest_hit(mirrored, k_far, hit) && !hit.is_water_surface)
         radiance += std::exp(-optics.attenuation().uniform[optics.clearest_band()] * hit.distance) *
-                    guessed_reflection(tables_.guides, hit, throughput);
+                    estimated_reflection(tables_.guides, hit, throughput);
     return radiance;
 }
 
@@ -329,14 +329,14 @@ bool PathWalk::advance() {
             find_surface_ahead();
             return true;
         }
-        w.vertex.reflect(tables_.guides, w.segment, state_.throughput);
+        w.sampler.reflect(tables_.guides, w.segment, state_.throughput);
         state_.left = {w.segment.hit.position, w.segment.hit.geometric_normal, w.surface_radiance};
         ++state_.reflections;
-        turn(PathTurn::Kind::reflected, w.segment.hit.position, &w.segment.hit);
+        add_vertex(PathVertex::Kind::reflected, w.segment.hit.position, &w.segment.hit);
         return leave(above(w.segment.hit));
     }
     if (w.places.empty()) return false;  // by rounding
-    const Workspace::Place place = w.places[find_weight(
+    const Workspace::Place place = w.places[sample_discrete(
         w.places, target - w.surface_ahead, [](const auto& each) { return each.weight(); })];
     optics.look_up(w.segment, place.distance, w.point);
     optics.find_scattering(w.point);
@@ -344,9 +344,9 @@ bool PathWalk::advance() {
     for (std::size_t b = 0; b < bands; ++b)
         state_.throughput[b] *= w.transmittance[b] * all / (place.scatters * place.light);
     const Point3 x = w.segment.ray.at(place.distance);
-    w.vertex.scatter(tables_.guides, x, w.segment.ray.direction, w.point, state_.throughput);
+    w.sampler.scatter(tables_.guides, x, w.segment.ray.direction, w.point, state_.throughput);
     ++state_.scatterings;
-    turn(PathTurn::Kind::scattered, x);
+    add_vertex(PathVertex::Kind::scattered, x);
     return leave(x);
 }
 
@@ -393,7 +393,7 @@ double PathWalk::draw_places(const Spectrum& to_end) {
         if (!(place.density > 0) || !(place.scatters > 0)) continue;
         place.light = w.guides->source(w.segment.ray.at(place.distance), w.segment.ray.direction) +
                       tables_.guides.particles.at(w.segment.ray.at(place.distance)) +
-                      k_ambient_of_place * light_.ambient;
+                      k_ambient_of_place * expected_.ambient;
         // The surface ahead, seen through the water by a small detour.
         if (w.surface_radiance > 0)
             place.light += w.surface_radiance * std::sqrt(std::min(1.0, to_surface / clearest));
@@ -449,7 +449,7 @@ bool PathWalk::go_to(double distance) {
 // Directions towards lit surfaces are not worth guessing at: light that small angles lead there
 // comes from all over them.
 const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
-    constexpr double k_min_weight = 0.1, k_survival_of_many = 0.9;
+    constexpr double k_min_weight = 0.1, k_max_survival_of_many = 0.9;
     constexpr int k_many = 100;  // scatterings, in water that absorbs next to nothing
     Workspace& w = workspace_of_thread();
     const WaterOptics& optics = tables_.optics;
@@ -475,18 +475,18 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
             if (!meets_water_surface()) return &w.segment;
             const double reflectance = reflectance_of_water_surface();
             for (double& value : throughput.first(bands)) value *= reflectance;
-            turn(PathTurn::Kind::mirrored, w.segment.hit.position);
+            add_vertex(PathVertex::Kind::mirrored, w.segment.hit.position);
             optics.set(mirrored_ray(), nullptr, w.segment);
             std::ranges::fill(w.transmittance.first(bands), 0.0);
             continue;
         }
         if (!(s < w.segment.length) || !go_to(s)) return nullptr;
         if (is_first) state_.distance = s;
-        const std::optional<Vector3> direction = scatter_plainly(
+        const std::optional<Vector3> direction = sample_phase_function(
             tables_.scattering, w.point, w.segment.ray.direction, random_, throughput.first(bands));
         if (!direction) return nullptr;
         ++state_.scatterings;
-        turn(PathTurn::Kind::scattered, w.segment.ray.at(s));
+        add_vertex(PathVertex::Kind::scattered, w.segment.ray.at(s));
         work_ += k_work_of_plain_vertex;
         double weight = 0;
         for (std::size_t b = 0; b < bands; ++b) weight += throughput[b] * tables_.light[b];
@@ -494,7 +494,7 @@ const WaterSegment* PathWalk::wander(const WaterSegment& segment) {
         if (is_first) first_weight = weight;
         if (!(weight > 0)) return nullptr;
         const double survival = std::min(weight / (k_min_weight * first_weight),
-                                         state_.scatterings > k_many ? k_survival_of_many : 1);
+                                         state_.scatterings > k_many ? k_max_survival_of_many : 1);
         const double of_survival = random_.next();
         if (survival < 1) {
             if (of_survival >= survival) return nullptr;
@@ -525,22 +525,22 @@ bool PathWalk::meets_surface_before(double distance) {
 }
 
 // The throughput has the transmittance already.
-void PathWalk::gather_surface_at_end() {
+void PathWalk::estimate_surface_light() {
     Workspace& w = workspace_of_thread();
     for (double& value : w.transmittance.first(tables_.optics.bands())) value = 1;
-    tables_.lamps.gather_from_surface(w.segment, w.transmittance, state_, random_, terms_);
+    tables_.lamps.estimate_direct_light(w.segment, w.transmittance, state_, random_, sink_);
     if (w.segment.hit.has_material) find_emission(state_.throughput);
 }
 
-void PathWalk::gather_lit_surface() {
-    gather_surface_at_end();
-    from_surface_by_worth(workspace_of_thread().segment);
+void PathWalk::trace_lit_surface() {
+    estimate_surface_light();
+    split_at_surface(workspace_of_thread().segment);
 }
 
-void PathWalk::gather_lit_surface(const IndirectLight& indirect) {
+void PathWalk::trace_lit_surface(const IrradianceCache& indirect) {
     Workspace& w = workspace_of_thread();
     const std::size_t bands = tables_.optics.bands();
-    gather_surface_at_end();
+    estimate_surface_light();
     const SurfaceHit& hit = w.segment.hit;
     if (hit.has_material && tables_.optics.scene().surfaces->material(hit).is_glossy) {
         from_surface(w.segment);
@@ -552,9 +552,9 @@ void PathWalk::gather_lit_surface(const IndirectLight& indirect) {
         const std::span<double> radiance = std::span(w.indirect).subspan(first, bands);
         for (std::size_t b = 0; b < bands; ++b)
             radiance[b] *= hit.reflectance[b] * state_.throughput[b];
-        PathTerm term = state_.term(first / bands, radiance);
-        ++term.reflections;
-        terms_.add(term);
+        PathContribution contribution = state_.contribution(first / bands, radiance);
+        ++contribution.reflections;
+        sink_.add(contribution);
     }
 }
 

@@ -6,23 +6,23 @@
 #include "core/base/random.h"
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
+#include "core/paths/direction_sampler.h"
 #include "core/paths/path_segment.h"
 #include "core/paths/path_tables.h"
-#include "core/paths/path_vertex.h"
 
 namespace uw {
 
-class IndirectLight;
+class IrradianceCache;
 
 /// The share of the ambient light that a path is expected to find beyond what is known of it.
 inline constexpr double k_ambient_beyond = 0.02;
 
-/// One path, from its first vertex to its end.
+/// One path, from its first sampler to its end.
 class PathWalk {
   public:
-    PathWalk(const PathTables& tables, const CameraSegment::Light& light, PathRandom& random,
-             PathTerms& terms)
-        : tables_(tables), light_(light), random_(random), terms_(terms) {}
+    PathWalk(const PathTables& tables, const CameraSegment::Expected& expected, PathRandom& random,
+             ContributionSink& sink)
+        : tables_(tables), expected_(expected), random_(random), sink_(sink) {}
 
     PathState& state() { return state_; }
     /// What it has taken: vertices at which a direction was chosen by all that is known, and a
@@ -35,7 +35,7 @@ class PathWalk {
     void from_water(const WaterSegment& segment, const WaterPoint& point);
     void from_surface(const WaterSegment& segment);
     /// Begins with reflections at its end, as many as their light is worth relative to the pixel's.
-    void from_surface_by_worth(const WaterSegment& segment);
+    void split_at_surface(const WaterSegment& segment);
     /// What the surface at the end of `segment` reflects of light that was scattered or reflected
     /// once before, and no more.
     void mirror(const WaterSegment& segment);
@@ -44,8 +44,8 @@ class PathWalk {
     const WaterSegment* wander(const WaterSegment& segment);
     /// The light of the surface at which it has ended: by looking up what is not direct, or by
     /// going on from there.
-    void gather_lit_surface(const IndirectLight& indirect);
-    void gather_lit_surface();
+    void trace_lit_surface(const IrradianceCache& indirect);
+    void trace_lit_surface();
 
   private:
     struct Workspace;
@@ -53,12 +53,12 @@ class PathWalk {
     static Workspace& workspace_of_thread();
 
     // Tells of a turn, which is the path's last from now on.
-    void turn(PathTurn::Kind kind, const Point3& position, const SurfaceHit* hit = nullptr);
-    // Gathers the light that arrives at the workspace's vertex from a direction that it draws,
+    void add_vertex(PathVertex::Kind kind, const Point3& position, const SurfaceHit* hit = nullptr);
+    // Gathers the light that arrives at the workspace's sampler from a direction that it draws,
     // along which the path may go on; false if it ends there, as it does anyhow if this `is_last`.
     bool leave(const Point3& origin, bool is_last = false);
-    ExpectedLight expected_from(const Point3& x) const;
-    double branches(const CandidateDirection& chosen) const;
+    ExpectedRadiance expected_from(const Point3& x) const;
+    double splitting_factor(const DirectionCandidate& chosen) const;
     // Whether the segment ends at the water's surface, which reflects the path along
     // mirrored_ray() with this reflectance.
     bool meets_water_surface() const;
@@ -68,15 +68,15 @@ class PathWalk {
     // Moves on to the segment that begins there, and gathers its light. The throughput is that at
     // the surface, after reflection.
     void follow_mirrored();
-    void gather_from_segment();
+    void estimate_next_event();
     void find_surface_ahead();
     void find_emission(const Spectrum& throughput);
     double arriving(double radiance) const;
-    void gather_surface_at_end();
+    void estimate_surface_light();
     void trace(const Ray& ray);
     void find_transmittance();  // of the segment
     void follow(bool goes_on);
-    // Moves to the next vertex and on from there; false if the path ends.
+    // Moves to the next sampler and on from there; false if the path ends.
     bool advance();
     double draw_places(const Spectrum& to_end);
     // The distance of the next scattering on the segment, by w.shares of what the bands lose on the
@@ -89,9 +89,9 @@ class PathWalk {
     bool meets_surface_before(double distance);
 
     const PathTables& tables_;
-    CameraSegment::Light light_;
+    CameraSegment::Expected expected_;
     PathRandom& random_;
-    PathTerms& terms_;
+    ContributionSink& sink_;
     PathState state_;
     double work_ = 0;
     bool stays_in_water_ = false;
@@ -117,13 +117,13 @@ struct PathWalk::Workspace {
     WaterPoint point;
     Spectrum transmittance;
     std::vector<double> c, shares, cumulative;
-    PathVertex vertex;
+    DirectionSampler sampler;
     std::vector<double> indirect;  // by lamp and band
     std::vector<Pending> pending;
-    std::vector<CandidateDirection> candidates;
+    std::vector<DirectionCandidate> candidates;
     std::vector<Place> places;
-    const LampGuides* guides = nullptr;  // at the beginning of the segment
-    LampGuides guides_of_pending, guides_of_mirrored, guides_at_water_surface;
+    const GuidingDistribution* guides = nullptr;  // at the beginning of the segment
+    GuidingDistribution guides_of_pending, guides_of_mirrored, guides_at_water_surface;
     // What the surface at its end reflects, roughly, and what of that arrives at the camera, summed
     // over the bands.
     double surface_radiance = 0, surface_ahead = 0;

@@ -19,7 +19,7 @@ constexpr double k_full_depth = 8, k_max_depth = 12;
 constexpr int k_distances_of_interval = 2;  // in the table
 // Below the least frequency all is even.
 constexpr double k_min_frequency = 0.0875;  // [1/rad]
-constexpr double k_frequency_step = 0.25;     // [octaves]
+constexpr double k_frequency_step = 0.25;   // [octaves]
 
 using Exponents = std::array<double, PointSpread::k_frequencies>;
 

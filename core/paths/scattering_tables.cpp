@@ -32,7 +32,8 @@ std::vector<double> typical_shares(const Medium& medium) {
 
 }  // namespace
 
-ScatteringTables::ScatteringTables(const Medium& medium, const LampField::Fineness& fineness)
+ScatteringTables::ScatteringTables(const Medium& medium,
+                                   const LampRadianceTable::Fineness& fineness)
     : phases(medium), shares(typical_shares(medium)), fineness_(fineness) {
     const std::span<const double> nodes = HalfTangentDensity::nodes();
     const std::size_t count = medium.phase_functions.size();
@@ -61,13 +62,13 @@ ScatteringTables::ScatteringTables(const Medium& medium, const LampField::Finene
     for (const Constituent& constituent : medium.constituents) include(constituent.per_unit);
 }
 
-const LampField& ScatteringTables::field() const {
+const LampRadianceTable& ScatteringTables::field() const {
     const std::lock_guard lock(field_mutex_);
     if (!field_) field_ = make_field();
     return *field_;
 }
 
-LampField ScatteringTables::make_field() const {
+LampRadianceTable ScatteringTables::make_field() const {
     std::vector<double> p(phase_count()), of_direction, of_line;
     for (const double h : HalfTangentDensity::nodes()) {
         phase(h, p);
@@ -77,8 +78,8 @@ LampField ScatteringTables::make_field() const {
         of_line.push_back(mean * dpsi);
         of_direction.push_back(2 * std::numbers::pi * mean * dpsi * h * dpsi);
     }
-    return {HalfTangentDensity(of_direction), HalfTangentDensity(of_line), min_albedo_,
-            max_albedo_, fineness_};
+    return {HalfTangentDensity(of_direction), HalfTangentDensity(of_line), min_albedo_, max_albedo_,
+            fineness_};
 }
 
 }  // namespace uw

@@ -8,7 +8,7 @@
 
 #include "core/light/medium.h"
 #include "core/paths/half_tangent_density.h"
-#include "core/paths/lamp_field.h"
+#include "core/paths/lamp_radiance_table.h"
 
 namespace uw {
 
@@ -28,10 +28,11 @@ struct ScatteringTables {
     /// All light that the water scatters around a point lamp, for the mean phase function and the
     /// albedos of all that it may hold. Found when it is first asked for, in about 0.1 s, or 0.02 s
     /// if it is coarse.
-    const LampField& field() const;
+    const LampRadianceTable& field() const;
 
     /// `fineness`: of `field`.
-    explicit ScatteringTables(const Medium& medium, const LampField::Fineness& fineness = {});
+    explicit ScatteringTables(const Medium& medium,
+                              const LampRadianceTable::Fineness& fineness = {});
     ScatteringTables(const ScatteringTables&) = delete;
     ScatteringTables& operator=(const ScatteringTables&) = delete;
     ScatteringTables(ScatteringTables&&) = delete;
@@ -45,12 +46,12 @@ struct ScatteringTables {
     }
 
   private:
-    LampField make_field() const;
+    LampRadianceTable make_field() const;
 
-    LampField::Fineness fineness_;
+    LampRadianceTable::Fineness fineness_;
     double min_albedo_ = 1, max_albedo_ = 0;
     mutable std::mutex field_mutex_;
-    mutable std::optional<LampField> field_;  // made where it is first asked for
+    mutable std::optional<LampRadianceTable> field_;  // made where it is first asked for
 };
 
 }  // namespace uw

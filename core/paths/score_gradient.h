@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "core/base/random.h"
+#include "core/paths/contribution_gradient.h"
 #include "core/paths/path_scores.h"
-#include "core/paths/term_gradient.h"
 
 namespace uw {
 
 /// The derivatives of a number by numbers of a scene, from those by the light of paths.
-class ScoreGradient final : public TermGradient {
+class ScoreGradient final : public ContributionGradient {
   public:
     /// `scenes` must outlive it. With a `seed`, of many changes a few are looked up for each term
     /// and stand for all, without bias: what a term costs has a limit.
@@ -27,11 +27,11 @@ class ScoreGradient final : public TermGradient {
           score_(scenes.changes() * scenes.bands()),
           sums_(scenes.changes()) {}
 
-    int turn(int before, const PathTurn& turn) override {
-        if (before == k_no_turn) scores_.begin();
-        return scores_.turn(before, turn);
+    int add_vertex(int before, const PathVertex& vertex) override {
+        if (before == k_no_vertex) scores_.begin();
+        return scores_.add_vertex(before, vertex);
     }
-    void add(const PathTerm& term, std::span<const double> worth) override {
+    void add(const PathContribution& term, std::span<const double> worth) override {
         const auto steps = static_cast<double>(step_);
         const std::size_t first = std::min(static_cast<std::size_t>(turn_ * steps), step_ - 1);
         // Consecutive terms, and those of every other lamp, share the changes out evenly.

@@ -4,19 +4,19 @@
 
 namespace uw {
 
-int TexelGradient::turn(int before, const PathTurn& turn) {
-    if (before == k_no_turn) finish();
+int TexelGradient::add_vertex(int before, const PathVertex& vertex) {
+    if (before == k_no_vertex) finish();
     if (count_ == corners_.size()) corners_.emplace_back();
     Corner& corner = corners_[count_];
     corner.before = before;
-    corner.is_reflection = turn.kind == PathTurn::Kind::reflected;
-    if (corner.is_reflection) corner.hit = *turn.hit;
+    corner.is_reflection = vertex.kind == PathVertex::Kind::reflected;
+    if (corner.is_reflection) corner.hit = *vertex.hit;
     corner.worth.assign(bands_, 0.0);
     return static_cast<int>(count_++);
 }
 
-void TexelGradient::add(const PathTerm& term, std::span<const double> worth) {
-    Corner& from = corners_[static_cast<std::size_t>(term.turn)];
+void TexelGradient::add(const PathContribution& term, std::span<const double> worth) {
+    Corner& from = corners_[static_cast<std::size_t>(term.vertex)];
     for (std::size_t b = 0; b < bands_; ++b) from.worth[b] += worth[b];
     if (term.hit != nullptr && term.emitter != k_no_emitter) add_reflection(*term.hit, worth);
 }
@@ -26,7 +26,7 @@ void TexelGradient::finish() {
     for (std::size_t i = count_; i-- > 0;) {
         const Corner& corner = corners_[i];
         if (corner.is_reflection) add_reflection(corner.hit, corner.worth);
-        if (corner.before == k_no_turn) continue;
+        if (corner.before == k_no_vertex) continue;
         Corner& from = corners_[static_cast<std::size_t>(corner.before)];
         for (std::size_t b = 0; b < bands_; ++b) from.worth[b] += corner.worth[b];
     }

@@ -6,20 +6,20 @@
 
 #include "core/geometry/texture.h"
 #include "core/geometry/textured_surfaces.h"
-#include "core/paths/term_gradient.h"
+#include "core/paths/contribution_gradient.h"
 
 namespace uw {
 
 /// The derivatives of a number by the texels of a texture that diffuse surfaces reflect by, from
 /// those by the light of paths. Texels that reflect nothing have none: no path goes by them.
-class TexelGradient final : public TermGradient {
+class TexelGradient final : public ContributionGradient {
   public:
     /// `surfaces` must outlive it, as must the texture.
     TexelGradient(const TexturedSurfaces& surfaces, const Texture& texture, std::size_t bands)
         : surfaces_(surfaces), gradient_(texture), bands_(bands) {}
 
-    int turn(int before, const PathTurn& turn) override;
-    void add(const PathTerm& term, std::span<const double> worth) override;
+    int add_vertex(int before, const PathVertex& vertex) override;
+    void add(const PathContribution& term, std::span<const double> worth) override;
     void finish() override;
 
     /// TextureGradient::by_texel.
@@ -27,7 +27,7 @@ class TexelGradient final : public TermGradient {
 
   private:
     struct Corner {
-        int before = k_no_turn;
+        int before = k_no_vertex;
         bool is_reflection = false;
         SurfaceHit hit;
         std::vector<double> worth;  // by band, of all terms by way of here

@@ -363,7 +363,7 @@ std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& c
     return lamps;
 }
 
-void append_glows(const std::vector<VolumeDesc>& volumes, std::vector<LampDesc>& lamps) {
+void append_emissions(const std::vector<VolumeDesc>& volumes, std::vector<LampDesc>& lamps) {
     for (std::size_t v = 0; v < volumes.size(); ++v)
         for (const EmissionDesc& emission : volumes[v].emission) {
             if (std::ranges::find(lamps, emission.name, &LampDesc::name) != lamps.end())
@@ -373,7 +373,7 @@ void append_glows(const std::vector<VolumeDesc>& volumes, std::vector<LampDesc>&
                     emission.where, emission.name));
             LampDesc lamp;
             lamp.name = emission.name;
-            lamp.glow = GlowDesc{v, emission};
+            lamp.emissive_volume = EmissiveVolumeDesc{v, emission};
             lamp.intensity = emission.per_unit;
             lamp.fixed_to_camera = false;
             lamp.where = emission.where;

@@ -112,11 +112,11 @@ struct SunDesc {
 struct SkyDesc;  // core/scene/sky_desc.h
 
 /// What makes a lamp the light of a volume: where it shines is up to the volume's grid.
-struct GlowDesc {
+struct EmissiveVolumeDesc {
     std::size_t volume = 0;  ///< index in SceneDesc::volumes
     EmissionDesc emission;
 
-    friend bool operator==(const GlowDesc&, const GlowDesc&) = default;
+    friend bool operator==(const EmissiveVolumeDesc&, const EmissiveVolumeDesc&) = default;
 };
 
 /// A lamp: a point, one with an extent, a sun, or the light of a volume.
@@ -131,7 +131,7 @@ struct LampDesc {
     std::shared_ptr<const SkyDesc> sky;
     /// Set for the light of a volume, which shines in all directions from where the volume's grid
     /// says, in the world: `position` means nothing, and `intensity` is EmissionDesc::per_unit.
-    std::optional<GlowDesc> glow;
+    std::optional<EmissiveVolumeDesc> emissive_volume;
     LampProfileDesc profile;
     // At most one of the next three is set; none for a profile that is absolute.
     std::optional<PerBand> intensity;  ///< on the axis [W/sr]; with a spectrum, a single total
@@ -163,6 +163,6 @@ LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& con
 std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context);
 
 /// Appends the light of volumes to a scene's lamps. Throws InputError for a name that is taken.
-void append_glows(const std::vector<VolumeDesc>& volumes, std::vector<LampDesc>& lamps);
+void append_emissions(const std::vector<VolumeDesc>& volumes, std::vector<LampDesc>& lamps);
 
 }  // namespace uw

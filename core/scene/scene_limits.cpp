@@ -56,8 +56,8 @@ class Checked {
         constexpr std::string_view k_mend = "check its unit";
         at_most(k_max_number, name, {value}, k_mend);
         if (value != 0 && std::abs(value) < k_min_number)
-            fail(fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_min_number,
-                             k_mend));
+            fail(
+                fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_min_number, k_mend));
     }
     void place(std::string_view name, const Vector3& v) const {
         at_most(k_max_coordinate, name, {v.x, v.y, v.z},
@@ -184,8 +184,7 @@ void check(const LampDesc& lamp) {
         checked.length("radius", lamp.extent->radius);
     }
     constexpr auto k_mend = "give W/sr, W or lm";
-    if (lamp.intensity)
-        checked.all_at_most(k_max_brightness, "intensity", *lamp.intensity, k_mend);
+    if (lamp.intensity) checked.all_at_most(k_max_brightness, "intensity", *lamp.intensity, k_mend);
     if (lamp.power) checked.all_at_most(k_max_brightness, "power", *lamp.power, k_mend);
     if (lamp.lumens) checked.at_most(k_max_brightness, "flux", {*lamp.lumens}, k_mend);
 }
@@ -208,8 +207,7 @@ void check(const VolumeDesc& volume) {
     for (const GridMappingDesc& grid : volume.grids) {
         const Checked mapping(grid.where);
         constexpr auto k_mend = "values are in ppm, coefficients in 1/m per unit";
-        mapping.at_most(k_max_per_unit, "concentration", {grid.small_ppm, grid.large_ppm},
-                        k_mend);
+        mapping.at_most(k_max_per_unit, "concentration", {grid.small_ppm, grid.large_ppm}, k_mend);
         for (const SpeciesAmount& amount : grid.amounts)
             if (amount.unit != SpeciesAmount::Unit::number)
                 mapping.at_most(k_max_per_unit, "concentration", {amount.amount}, k_mend);

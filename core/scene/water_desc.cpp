@@ -234,8 +234,8 @@ SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
     SnowDesc snow;
     snow.where = value.location();
     snow.number = map.require("number", k_example).positive("give the particles per m^3");
-    read_diameters(map.require("diameter", k_example), k_min_diameter, k_max_diameter,
-                   snow.least, snow.greatest);
+    read_diameters(map.require("diameter", k_example), k_min_diameter, k_max_diameter, snow.least,
+                   snow.greatest);
     if (const auto entry = map.find("exponent"))
         snow.exponent = entry->within(0, 10, "give Junge's exponent, of numbers per diameter: 4");
     snow.reflectance.assign(context.band_count, 0.4);

@@ -274,7 +274,7 @@ std::string SceneChanges::entry_of(std::size_t lamp) const {
     if (!entry)
         throw UsageError(fmt::format(
             "'{}' {}", this->lamp(lamp).name,
-            this->lamp(lamp).glow
+            this->lamp(lamp).emissive_volume
                 ? "is the light of a volume; change its emission in the scene file"
             : this->lamp(lamp).sky
                 ? "is the light of the sky; change that in the scene file"

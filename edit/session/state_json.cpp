@@ -269,10 +269,10 @@ struct ProfileJson {
 
 Json brightness_json(const LampDesc& lamp, const ConfigNode* entry) {
     Json brightness;
-    if (lamp.glow)
+    if (lamp.emissive_volume)
         brightness = {{"kind", "emission"},
-                      {"unit", lamp.glow->emission.blackbody ? "1/m" : "W/(sr m3)"},
-                      {"value", list_json(lamp.glow->emission.per_unit)}};
+                      {"unit", lamp.emissive_volume->emission.blackbody ? "1/m" : "W/(sr m3)"},
+                      {"value", list_json(lamp.emissive_volume->emission.per_unit)}};
     else if (lamp.sun && lamp.intensity)
         brightness = {
             {"kind", "irradiance"}, {"unit", "W/m2"}, {"value", list_json(*lamp.intensity)}};
@@ -297,7 +297,8 @@ Json brightness_json(const LampDesc& lamp, const ConfigNode* entry) {
 
 // Why the editor does not change a lamp; empty if it does.
 std::string reason_to_lock(const LampDesc& lamp, const ConfigNode* entry) {
-    if (lamp.glow) return "it is the light of a volume, and is changed there in the scene file";
+    if (lamp.emissive_volume)
+        return "it is the light of a volume, and is changed there in the scene file";
     if (lamp.sky) return "it is the light of the sky, and is changed there in the scene file";
     return entry ? "" : "it comes from a glTF file, which is not written here";
 }
@@ -347,30 +348,30 @@ Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& t
         cone.push_back(pixel_json(point));
     const auto half_angle = beam_half_angle(lamp.profile);
     const std::string why_not = reason_to_lock(lamp, entry);
-    return {
-        {"index", index},
-        {"name", lamp.name},
-        {"path", entry ? Json(fmt::format("lamps[{}]", *known.entry)) : Json(nullptr)},
-        {"editable", why_not.empty()},
-        {"why_not", why_not.empty() ? Json(nullptr) : Json(why_not)},
-        {"on", known.on},
-        {"frame", frame_of(desc, lamp, entry)},
-        {"position", point_json(lamp.position)},
-        {"direction", vector_json(lamp.direction)},
-        {"world_position", point_json(placed.position)},
-        {"world_direction", vector_json(placed.direction)},
-        {"profile", lamp.sun    ? Json{{"type", "sun"}}
-                    : lamp.glow ? Json{{"type", "volume"}}
-                                : std::visit(ProfileJson{desc.file.parent_path()}, lamp.profile)},
-        {"extent", extent_json(lamp.extent)},
-        {"sun", sun_json(lamp.sun)},
-        {"half_angle", half_angle ? Json(*half_angle) : Json(nullptr)},
-        {"brightness", brightness_json(lamp, entry)},
-        {"band_intensity", list_json(known.brightness.first(edited.bands()))},
-        {"rgb_scale", list_json(edited.colour_scale(known.brightness))},
-        {"handle", handle_json(*edited.camera, placed.position)},
-        {"axis_handle", handle_json(*edited.camera, axis_point(placed))},
-        {"cone", std::move(cone)}};
+    return {{"index", index},
+            {"name", lamp.name},
+            {"path", entry ? Json(fmt::format("lamps[{}]", *known.entry)) : Json(nullptr)},
+            {"editable", why_not.empty()},
+            {"why_not", why_not.empty() ? Json(nullptr) : Json(why_not)},
+            {"on", known.on},
+            {"frame", frame_of(desc, lamp, entry)},
+            {"position", point_json(lamp.position)},
+            {"direction", vector_json(lamp.direction)},
+            {"world_position", point_json(placed.position)},
+            {"world_direction", vector_json(placed.direction)},
+            {"profile", lamp.sun ? Json{{"type", "sun"}}
+                        : lamp.emissive_volume
+                            ? Json{{"type", "volume"}}
+                            : std::visit(ProfileJson{desc.file.parent_path()}, lamp.profile)},
+            {"extent", extent_json(lamp.extent)},
+            {"sun", sun_json(lamp.sun)},
+            {"half_angle", half_angle ? Json(*half_angle) : Json(nullptr)},
+            {"brightness", brightness_json(lamp, entry)},
+            {"band_intensity", list_json(known.brightness.first(edited.bands()))},
+            {"rgb_scale", list_json(edited.colour_scale(known.brightness))},
+            {"handle", handle_json(*edited.camera, placed.position)},
+            {"axis_handle", handle_json(*edited.camera, axis_point(placed))},
+            {"cone", std::move(cone)}};
 }
 
 /// The lamp spectra that a scene can name without a file, as values of `spectrum`.

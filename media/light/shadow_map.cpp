@@ -387,8 +387,8 @@ std::vector<LightSquare> SunShadowMap::squares_around(const Point3& centre, doub
     if (all.half > reach) all = around_centre((1 + k_square_step) * reach);
     all.half *= 1 + 1e-3;  // with what a rounding leaves outside
     std::vector<LightSquare> squares{all};
-    for (double half = all.half / k_narrower;
-         half >= k_min_half && squares.size() < k_max_squares; half /= k_narrower)
+    for (double half = all.half / k_narrower; half >= k_min_half && squares.size() < k_max_squares;
+         half /= k_narrower)
         squares.push_back(around_centre(half));
     std::reverse(squares.begin(), squares.end());
     return squares;

@@ -51,7 +51,7 @@ std::optional<double> fluid_frame_rate(const std::filesystem::path& data_file);
 struct FluidDomain {
     bool is_adaptive = false;
     double longest_side = 0;       // of the whole domain [m]
-    int max_voxels = 0;           // of any frame looked at: it has at least as many along it
+    int max_voxels = 0;            // of any frame looked at: it has at least as many along it
     std::optional<Vector3> voxel;  // the true edges [m], if they are known
     Vector3 first{0};              // voxel of the domain at which the grid begins; 0 if not known
     std::optional<Affine> blender_from_domain;  // as in FluidConfig

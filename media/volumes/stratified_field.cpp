@@ -13,8 +13,7 @@ StratifiedField::StratifiedField(std::shared_ptr<const ConcentrationField> grids
     : grids_(std::move(grids)), strata_(std::move(strata)) {}
 
 Bounds StratifiedField::bounds() const {
-    return {at_origin_plus(Vector3(-k_max_coordinate)),
-            at_origin_plus(Vector3(k_max_coordinate))};
+    return {at_origin_plus(Vector3(-k_max_coordinate)), at_origin_plus(Vector3(k_max_coordinate))};
 }
 
 void StratifiedField::sample(const Point3& x, std::span<double> concentration) const {

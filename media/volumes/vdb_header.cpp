@@ -171,8 +171,7 @@ GridSummary read_nano_grid(ByteReader& in, std::uint16_t codec) {
         return bytes <= static_cast<std::uint64_t>(in.size());
     };
     constexpr std::uint64_t k_max_packing = 4096;  // no codec compresses better than that
-    if (!fits(metadata.stored_bytes) ||
-        metadata.grid_bytes / k_max_packing > metadata.stored_bytes)
+    if (!fits(metadata.stored_bytes) || metadata.grid_bytes / k_max_packing > metadata.stored_bytes)
         in.fail("is truncated or damaged; copy or export it again");
     if (codec == 0 && metadata.grid_bytes != metadata.stored_bytes) in.fail_damaged();
     GridSummary grid;

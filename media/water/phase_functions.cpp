@@ -478,9 +478,9 @@ std::shared_ptr<const PhaseFunction> table_phase(const TabulatedPhaseDesc& desc,
                                                  const SourceLocation& where,
                                                  std::vector<std::string>& warnings) {
     const std::string name = desc.file.filename().string();
-    const std::string text = read_text_file(
-        desc.file, fmt::format("{}: {}", where, printable(desc.file.string(), 300)),
-        k_max_table_file, "phase function table (CSV with columns angle_deg,phase)");
+    const std::string text =
+        read_text_file(desc.file, fmt::format("{}: {}", where, printable(desc.file.string(), 300)),
+                       k_max_table_file, "phase function table (CSV with columns angle_deg,phase)");
     auto phase =
         std::make_shared<TabulatedPhase>(CsvTable(text, name).curve("angle_deg", "phase"), name);
     // Published tables integrate to 1 within a few per cent.

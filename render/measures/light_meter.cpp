@@ -34,10 +34,10 @@ constexpr int k_trial_rays = 256;
 constexpr std::uint64_t k_meter_seed = 0x6d65746572;
 
 /// The sum of what paths bring.
-class RadianceSum final : public PathTerms {
+class RadianceSum final : public ContributionSink {
   public:
     explicit RadianceSum(std::size_t bands) : bands_(bands) {}
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         for (std::size_t b = 0; b < bands_; ++b) sum_[b] += term.radiance[b];
     }
     const Spectrum& sum() const { return sum_; }
@@ -168,7 +168,7 @@ class RadianceEstimate {
             if (is_surface) find_direct(sample, leaving);
             transport_.paths->begin(ray, has_hit ? &sample.hit : nullptr, leaving.first(bands_),
                                     segment_);
-            CameraSegment::Light& light = segment_.light;
+            CameraSegment::Expected& expected = segment_.light;
             light.own = std::max(light.own, typical_);
             light.ambient = std::max(light.ambient, typical_ / k_ambient_beyond);
             const auto stream = [&](std::uint64_t kind) {

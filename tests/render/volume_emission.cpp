@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/light/glow.h"
+#include "core/light/emission.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_scene.h"
 #include "tests/support/vdb/vdb_fixtures.h"
@@ -65,7 +65,7 @@ SceneDesc glowing(VolumeDesc volume, const EmissionDesc& emission, int width = 8
     SceneDesc desc = pinhole_scene(width, height);
     volume.emission = {emission};
     desc.volumes = {std::move(volume)};
-    append_glows(desc.volumes, desc.lamps);
+    append_emissions(desc.volumes, desc.lamps);
     return desc;
 }
 
@@ -85,13 +85,13 @@ double planck_band(double temperature, double begin_nm, double end_nm) {
     return sum * (end_nm - begin_nm) / (3 * k_simpson);
 }
 
-class Glow : public testing::TestWithParam<RenderDesc::Integrator> {
+class EmissionOf : public testing::TestWithParam<RenderDesc::Integrator> {
   protected:
     GlowFixture fixture_;
 };
 
 // A slab of thickness L, behind d of water: int e^-cs ds = (e^-cd - e^-c(d + L)) / c.
-TEST_P(Glow, OfASlabIsDimmedByWhatIsBeforeEachPartOfIt) {
+TEST_P(EmissionOf, OfASlabIsDimmedByWhatIsBeforeEachPartOfIt) {
     SceneDesc desc = glowing(fixture_.slab(1.5), flame({3, 2, 1}));
     desc.render.integrator = GetParam();
     const TestScene scene(desc);
@@ -117,12 +117,12 @@ TEST_P(Glow, OfASlabIsDimmedByWhatIsBeforeEachPartOfIt) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Glow,
+INSTANTIATE_TEST_SUITE_P(Integrators, EmissionOf,
                          testing::Values(RenderDesc::Integrator::volume,
                                          RenderDesc::Integrator::reference));
 
 // A surface hides what glows behind it, and what glows before it hides nothing.
-TEST(Glows, EndAtSurfaces) {
+TEST(Emission, EndAtSurfaces) {
     const GlowFixture fixture;
     SceneDesc desc = glowing(fixture.slab(1.5), flame({3, 2, 1}));
     desc.water.absorption = {0, 0, 0};
@@ -136,7 +136,7 @@ TEST(Glows, EndAtSurfaces) {
 
 // Outside of a ball the irradiance is that of all its light at its centre, as the parts of it lie
 // around each other as evenly as their number allows.
-TEST(Glows, LightSurfacesAsABallDoes) {
+TEST(Emission, LightSurfacesAsABallDoes) {
     const GlowFixture fixture;
     EmissionDesc emission = flame({3, 2, 1});
     emission.samples = 64;
@@ -170,7 +170,7 @@ TEST(Glows, LightSurfacesAsABallDoes) {
 }
 
 // What the water scatters of a small glow is what it scatters of a lamp as bright.
-TEST(Glows, AreScatteredAsALampIs) {
+TEST(Emission, AreScatteredAsALampIs) {
     const GlowFixture fixture;
     EmissionDesc emission = flame({3e5, 2e5, 1e5});
     SceneDesc desc = glowing(fixture.ball(0.02, 1), emission, 16, 12);
@@ -187,7 +187,7 @@ TEST(Glows, AreScatteredAsALampIs) {
     }
 }
 
-TEST(Glows, OfABlackbodyFollowPlancksLaw) {
+TEST(Emission, OfABlackbodyFollowPlancksLaw) {
     EmissionDesc emission = flame({0.5, 0.5, 0.5});
     emission.blackbody = EmissionDesc::Blackbody{1000, 273.15};
     const std::vector<double> bands{620, 540, 450};
@@ -209,7 +209,7 @@ TEST(Glows, OfABlackbodyFollowPlancksLaw) {
     EXPECT_THROW(Emission(emission, one), InputError);
 }
 
-TEST(Glows, OfATableAreLinearBetweenItsRows) {
+TEST(Emission, OfATableAreLinearBetweenItsRows) {
     EmissionDesc emission = flame({4, 3, 0});
     emission.table = {{0.5, {1, 0, 0}}, {1, {2, 3, 0}}, {3, {4, 1, 0}}};
     const std::vector<double> bands{620, 540, 450};
@@ -227,7 +227,7 @@ TEST(Glows, OfATableAreLinearBetweenItsRows) {
 
 // Light that the water's speed sets off, in a flow across the view whose speed grows along it: of v
 // = z / (1 s) from 1.5 to 2.5 m/s, the share at depth z is z - 1.5 m, int (z - 1.5) e^-cz dz.
-TEST(Glows, AreSetOffByTheWatersSpeed) {
+TEST(Emission, AreSetOffByTheWatersSpeed) {
     const GlowFixture fixture;
     VdbFixture grid;
     grid.name = "flame";
@@ -267,7 +267,7 @@ TEST(Glows, AreSetOffByTheWatersSpeed) {
 }
 
 // Within a gas that absorbs as much as it emits, and is as hot everywhere, one sees a blackbody.
-TEST(Glows, AreInEquilibriumInAFurnace) {
+TEST(Emission, AreInEquilibriumInAFurnace) {
     const GlowFixture fixture;
     EmissionDesc emission = flame({30, 20, 40});
     emission.blackbody = EmissionDesc::Blackbody{1, 1999};
@@ -287,7 +287,7 @@ TEST(Glows, AreInEquilibriumInAFurnace) {
 // Where such a gas scatters, too, a = 2 and b = 1 per metre, what is not scattered is a / c = 2/3
 // of the blackbody, and what is scattered once, isotropically, b / c of that. Points bring less of
 // the latter, the fewer they are: docs/scene-file.md tells how much.
-TEST(Glows, AreTooDarkInAFurnaceThatScatters) {
+TEST(Emission, AreTooDarkInAFurnaceThatScatters) {
     const GlowFixture fixture;
     VdbFixture grid;
     grid.name = "flame";
@@ -316,14 +316,14 @@ TEST(Glows, AreTooDarkInAFurnaceThatScatters) {
     EXPECT_LT(scattered, 2.0 / 9);
 }
 
-TEST(Glows, HaveANameOfTheirOwn) {
+TEST(Emission, HaveANameOfTheirOwn) {
     SceneDesc desc = pinhole_scene(4, 3);
     VolumeDesc volume;
     volume.emission = {flame({1, 1, 1})};
     desc.volumes = {volume};
     desc.lamps = {isotropic_lamp({}, 1)};
     desc.lamps[0].name = "flame";
-    EXPECT_THROW(append_glows(desc.volumes, desc.lamps), InputError);
+    EXPECT_THROW(append_emissions(desc.volumes, desc.lamps), InputError);
 }
 
 }  // namespace

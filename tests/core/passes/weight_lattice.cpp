@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/passes/all_light_pass.h"
+#include "core/passes/multiple_scattering_pass.h"
 
 #include <gtest/gtest.h>
 

@@ -12,11 +12,11 @@ namespace uw::test {
 namespace {
 
 /// Checks what each term says of itself.
-class KindCheck final : public PathTerms {
+class KindCheck final : public ContributionSink {
   public:
     enum class Source { single, water, surface };
     KindCheck(Source source, double distance) : source_(source), distance_(distance) {}
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         ++count;
         EXPECT_EQ(term.lamp, 0);
         EXPECT_EQ(term.from_water, source_ != Source::surface);
@@ -61,16 +61,16 @@ TEST(PathLaws, TermsAreOfTheKindThatTheyClaim) {
 }
 
 /// Passes on what is mirrored, times a factor for each band.
-class MirroredPart final : public PathTerms {
+class MirroredPart final : public ContributionSink {
   public:
-    MirroredPart(PathTerms& sums, std::span<const double> factors)
+    MirroredPart(ContributionSink& sums, std::span<const double> factors)
         : sums_(sums), factors_(factors) {}
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         if (!PathTracer::is_mirrored(term)) {
             ++others;
             return;
         }
-        PathTerm scaled = term;
+        PathContribution scaled = term;
         radiance_.assign(term.radiance.begin(), term.radiance.end());
         for (std::size_t b = 0; b < radiance_.size(); ++b) radiance_[b] *= factors_[b];
         scaled.radiance = radiance_;
@@ -79,7 +79,7 @@ class MirroredPart final : public PathTerms {
     int others = 0;
 
   private:
-    PathTerms& sums_;
+    ContributionSink& sums_;
     std::span<const double> factors_;
     std::vector<double> radiance_;
 };

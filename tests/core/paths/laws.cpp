@@ -123,8 +123,8 @@ TEST(PathLaws, ALampsLightIsThatOfItsPoints) {
 }
 
 TEST(PathLaws, EachLampHasItsOwnLight) {
-    struct PerLamp final : PathTerms {
-        void add(const PathTerm& term) override { sums[term.lamp] += term.radiance[0]; }
+    struct PerLamp final : ContributionSink {
+        void add(const PathContribution& term) override { sums[term.lamp] += term.radiance[0]; }
         std::array<double, 2> sums{};
     };
     PathScene both({{0.1, 0.3}}, 0.9);

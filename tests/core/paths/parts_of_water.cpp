@@ -2,7 +2,7 @@
 // The two parts of the water's light: that of lit surfaces, and that of the water alone.
 #include <gtest/gtest.h>
 
-#include "core/paths/indirect_light.h"
+#include "core/paths/irradiance_cache.h"
 #include "tests/support/paths/closed_form_surfaces.h"
 #include "tests/support/paths/lit_box.h"
 #include "tests/support/paths/ray_batches.h"
@@ -23,13 +23,13 @@ TEST(LitSurfaces, FillTheWaterOfAWhiteFurnace) {
     scene.surfaces = std::move(room);
     const PathTracer tracer(scene.lit());
     // What a white surface reflects.
-    const IndirectLight indirect({{{0, 0, 0}, {0, 0, 1}},
-                                  {{0, 0, 0}, {0, 0, -1}},
-                                  {{0, 0, 0}, {0, 1, 0}},
-                                  {{0, 0, 0}, {0, -1, 0}},
-                                  {{0, 0, 0}, {1, 0, 0}},
-                                  {{0, 0, 0}, {-1, 0, 0}}},
-                                 std::vector<float>(18, 1.0F), 3);
+    const IrradianceCache indirect({{{0, 0, 0}, {0, 0, 1}},
+                                    {{0, 0, 0}, {0, 0, -1}},
+                                    {{0, 0, 0}, {0, 1, 0}},
+                                    {{0, 0, 0}, {0, -1, 0}},
+                                    {{0, 0, 0}, {1, 0, 0}},
+                                    {{0, 0, 0}, {-1, 0, 0}}},
+                                   std::vector<float>(18, 1.0F), 3);
     Deviations deviations;
     for (const Vector3& direction : {Vector3(0.4, 0.3, 1), Vector3(-0.6, -0.6, 0.5)}) {
         const Ray ray{{0, 0, 0}, glm::normalize(direction)};
@@ -61,7 +61,7 @@ TEST(LitSurfaces, AreLookedForByPathsThatEnd) {
     thing->add_sphere({0, 0, 30}, 0.1, {{0.5}, {.emission = {1}}});
     scene.surfaces = std::move(thing);
     const PathTracer tracer(scene.lit());
-    const IndirectLight indirect({}, {}, 1);
+    const IrradianceCache indirect({}, {}, 1);
     CameraSegment segment;
     tracer.begin({{0, 0, 0}, {0, 0, -1}}, nullptr, {}, segment);
     TermSums sums(1);

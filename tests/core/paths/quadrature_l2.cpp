@@ -175,9 +175,9 @@ double twice_scattered(std::size_t part, const Shadow* shadow, int fineness) {
 }
 
 /// The terms of light scattered once and twice, by the part of the ray where it is scattered last.
-class Parts final : public PathTerms {
+class Parts final : public ContributionSink {
   public:
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         if (term.scatterings > 2 || term.reflections > 0) return;
         std::size_t part = 0;
         while (part + 1 < k_parts && term.distance >= k_cuts[part + 1]) ++part;

@@ -14,7 +14,7 @@
 
 #include "core/base/random.h"
 #include "core/light/lamp.h"
-#include "core/paths/lamp_guides.h"
+#include "core/paths/guiding_distribution.h"
 #include "core/paths/path_tracer.h"
 #include "core/paths/scattering_tables.h"
 #include "tests/support/paths/batch_means.h"

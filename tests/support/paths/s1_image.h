@@ -50,9 +50,9 @@ struct S1Batch {
 inline S1Batch trace_s1(const PathScene& scene, const PathTracer& tracer, std::uint64_t seed,
                         int rays) {
     // Passes terms on and adds those of one path up.
-    struct Largest final : PathTerms {
+    struct Largest final : ContributionSink {
         explicit Largest(TermSums& to) : sums(to) {}
-        void add(const PathTerm& term) override {
+        void add(const PathContribution& term) override {
             sums.add(term);
             for (std::size_t b = 0; b < 3; ++b) path[b] += term.radiance[b];
         }

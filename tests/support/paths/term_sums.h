@@ -14,7 +14,7 @@
 namespace uw::test {
 
 /// Adds up the terms of paths by their kind.
-class TermSums final : public PathTerms {
+class TermSums final : public ContributionSink {
   public:
     /// The last of each stands for all beyond.
     static constexpr int k_scatterings = 8, k_reflections = 5;
@@ -25,7 +25,7 @@ class TermSums final : public PathTerms {
     /// What each term counts from here on.
     void set_weight(double weight) { weight_ = weight; }
 
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         const std::size_t row =
             row_of(std::min(term.scatterings, k_scatterings - 1),
                    std::min(term.reflections, k_reflections - 1), term.from_water);
@@ -65,7 +65,7 @@ class TermSums final : public PathTerms {
 
 /// One path of either kind that begins with a scattering; `tracer` gives the segment one of each.
 inline void trace_scattered(const PathTracer& tracer, const CameraSegment& segment,
-                            PathRandom& random, PathTerms& terms) {
+                            PathRandom& random, ContributionSink& terms) {
     tracer.trace_water(segment, random, terms);
     tracer.trace_lit_surfaces(segment, random, terms);
 }

@@ -1,6 +1,6 @@
 // ctest labels: unit statistical metamorphic
 // The fast form of multiple scattering against light paths.
-#include "core/passes/all_light_pass.h"
+#include "core/passes/multiple_scattering_pass.h"
 
 #include <gtest/gtest.h>
 

@@ -6,34 +6,34 @@
 
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
-#include "core/paths/lamp_field.h"
-#include "core/paths/lamp_gathering.h"
-#include "core/paths/particle_light.h"
+#include "core/paths/lamp_radiance_table.h"
+#include "core/paths/medium_radiance_cache.h"
+#include "core/paths/next_event_estimator.h"
 #include "core/paths/path_segment.h"
 #include "core/paths/scattering_tables.h"
 
 namespace uw {
 
 /// What guides look up; what is referred to outlives them.
-struct GuideTables {
+struct GuidingTables {
     const WaterOptics& optics;
     const ScatteringTables& scattering;
-    const LampGathering& lamps;
+    const NextEventEstimator& lamps;
     // b by band, all phase functions together: of the uniform water, and of constituents per unit.
     Spectrum uniform_scattering;
     std::vector<Spectrum> constituents_scattering;
 
-    ParticleLight particles;
+    MediumRadianceCache particles;
 
-    GuideTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
-                const LampGathering& of_lamps);
+    GuidingTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
+                  const NextEventEstimator& of_lamps);
 };
 
 /// How much light of the lamps may arrive at a point, and from where: by the field of a lamp in
-/// infinite water (LampField), at the optical depth of the straight way to it. It guides random
-/// paths, and nothing but their variance depends on it. All values are means over the bands with
-/// the weights given to `find`. Reused storage.
-class LampGuides {
+/// infinite water (LampRadianceTable), at the optical depth of the straight way to it. It guides
+/// random paths, and nothing but their variance depends on it. All values are means over the bands
+/// with the weights given to `find`. Reused storage.
+class GuidingDistribution {
   public:
     struct Guide {
         std::size_t lamp = 0;
@@ -47,11 +47,11 @@ class LampGuides {
         // The irradiance of a sun's light that the water scatters once, by any angle, which has the
         // shape of the phase function next to the sun's direction. 0 for all other lamps.
         double scattered_once = 0;
-        LampField::Place place;
+        LampRadianceTable::Place place;
     };
 
     /// At the point `x`; `weights` by band.
-    void find(const GuideTables& tables, const Point3& x, const Spectrum& weights);
+    void find(const GuidingTables& tables, const Point3& x, const Spectrum& weights);
     std::span<const Guide> all() const { return guides_; }
 
     /// The light that arrives from `direction`, and its part that was scattered more than once
@@ -62,7 +62,7 @@ class LampGuides {
     double source(const Point3& y, const Vector3& direction) const;
 
   private:
-    const GuideTables* tables_ = nullptr;
+    const GuidingTables* tables_ = nullptr;
     std::vector<Guide> guides_;
     std::vector<double> column_;
 };
@@ -70,7 +70,7 @@ class LampGuides {
 /// The light of lamps that a surface, as it is hit, reflects evenly to all sides, by the same
 /// field; at least as much as one that faces them a little: the mean over the bands with `weights`
 /// [W m^-2 sr^-1].
-double guessed_reflection(const GuideTables& tables, const SurfaceHit& hit,
-                          const Spectrum& weights);
+double estimated_reflection(const GuidingTables& tables, const SurfaceHit& hit,
+                            const Spectrum& weights);
 
 }  // namespace uw

@@ -1,4 +1,4 @@
-#include "core/paths/particle_light.h"
+#include "core/paths/medium_radiance_cache.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,8 +21,8 @@ constexpr double k_negligible_transmittance = 0.02;
 
 }  // namespace
 
-ParticleLight::ParticleLight(const WaterOptics& optics, const LampField& field,
-                             const LampGathering& lamps)
+MediumRadianceCache::MediumRadianceCache(const WaterOptics& optics, const LampRadianceTable& field,
+                                         const NextEventEstimator& lamps)
     : bounds_(optics.scene().field->grids().bounds()) {
     const Vector3 extent = bounds_.empty() ? Vector3(0) : bounds_.max - bounds_.min;
     if (optics.constituents() == 0 || !(extent.x > 0 && extent.y > 0 && extent.z > 0)) return;
@@ -89,7 +89,7 @@ ParticleLight::ParticleLight(const WaterOptics& optics, const LampField& field,
     });
 }
 
-double ParticleLight::at(const Point3& x) const {
+double MediumRadianceCache::at(const Point3& x) const {
     if (cells_.empty()) return 0;
     std::array<int, 3> i{};
     for (int axis = 0; axis < 3; ++axis) {
@@ -104,7 +104,7 @@ double ParticleLight::at(const Point3& x) const {
 }
 
 // From cell to cell (Amanatides and Woo 1987).
-double ParticleLight::along(const Ray& ray, double reach) const {
+double MediumRadianceCache::along(const Ray& ray, double reach) const {
     if (cells_.empty()) return 0;
     Bounds all = bounds_;
     for (int axis = 0; axis < 3; ++axis)

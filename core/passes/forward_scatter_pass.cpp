@@ -1,4 +1,4 @@
-#include "core/passes/forward_pass.h"
+#include "core/passes/forward_scatter_pass.h"
 
 #include <fmt/format.h>
 
@@ -442,24 +442,24 @@ void ForwardScattering::write(const LayerPlan& plan, const BandColour& colour, F
     });
 }
 
-ForwardPass::ForwardPass() : Pass("forward scatter") {}
-ForwardPass::~ForwardPass() = default;
+ForwardScatterPass::ForwardScatterPass() : Pass("forward scatter") {}
+ForwardScatterPass::~ForwardScatterPass() = default;
 
-PassNeeds ForwardPass::needs(const LayerPlan& /*plan*/) const {
+PassNeeds ForwardScatterPass::needs(const LayerPlan& /*plan*/) const {
     return {.slabs = true, .whole_image = true};
 }
 
-void ForwardPass::provide(LayerSupply& supply) const {
+void ForwardScatterPass::provide(LayerSupply& supply) const {
     supply.layers |= {Layer::forward};
 }
 
-void ForwardPass::begin(Rendering& rendering) {
+void ForwardScatterPass::begin(Rendering& rendering) {
     scattering_.reset();
     scattering_ = std::make_unique<ForwardScattering>(rendering);
     rendering.steps.emplace_back([this](const RenderedPixel& pixel) { scattering_->keep(pixel); });
 }
 
-void ForwardPass::run(Rendering& rendering) {
+void ForwardScatterPass::run(Rendering& rendering) {
     scattering_->run(rendering.progress_of(stage()));
     scattering_->write(rendering.plan, rendering.colour, rendering.film);
     scattering_.reset();

@@ -1,4 +1,4 @@
-#include "core/paths/lamp_field.h"
+#include "core/paths/lamp_radiance_table.h"
 
 #include <algorithm>
 #include <bit>
@@ -72,7 +72,7 @@ double half_tangent_of(double opposite, double adjacent, double hypotenuse) {
 
 /// Finds order after order. Fields are kept times radius and sine, which takes their singularities
 /// away: [radius * angles + angle].
-class LampField::Solver {
+class LampRadianceTable::Solver {
   public:
     Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line, bool is_coarse);
 
@@ -112,8 +112,8 @@ constexpr double k_decay = 0.15;  // of the source, with the distance from the l
 
 }  // namespace
 
-LampField::Solver::Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-                          bool is_coarse)
+LampRadianceTable::Solver::Solver(const HalfTangentDensity& direction,
+                                  const HalfTangentDensity& line, bool is_coarse)
     : is_coarse_(is_coarse),
       radii_(is_coarse ? k_coarse_radii : k_radii),
       angles_(is_coarse ? k_coarse_angles : k_angles),
@@ -131,7 +131,8 @@ LampField::Solver::Solver(const HalfTangentDensity& direction, const HalfTangent
     });
 }
 
-std::vector<double> LampField::Solver::at_nodes_of_field(const std::vector<double>& values) const {
+std::vector<double> LampRadianceTable::Solver::at_nodes_of_field(
+    const std::vector<double>& values) const {
     if (!is_coarse_) return values;
     std::vector<double> finer;
     for (std::size_t i = 0; i < k_radii.count(); ++i)
@@ -147,7 +148,7 @@ std::vector<double> LampField::Solver::at_nodes_of_field(const std::vector<doubl
 
 // Between the nodes of the angle a parabola goes through three: a straight line would spread the
 // light once more.
-void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
+void LampRadianceTable::Solver::make_matrix(const HalfTangentDensity& direction) {
     // Polar angles are the closer together the less is scattered beyond them: what comes from
     // behind has been scattered far from the bright light around the lamp.
     constexpr int k_polar = 96, k_azimuths = 16;
@@ -187,8 +188,8 @@ void LampField::Solver::make_matrix(const HalfTangentDensity& direction) {
 }
 
 // What is scattered once: (1 / D) int p e^-(s + R) dpsi, with D the lamp's distance from the ray.
-double LampField::Solver::first_order(const HalfTangentDensity& line, double radius,
-                                      double angle) const {
+double LampRadianceTable::Solver::first_order(const HalfTangentDensity& line, double radius,
+                                              double angle) const {
     constexpr int k_points = 32;  // of equal mass
     const double distance = radius * sine_of(angle);
     const double foot = radius * std::cos(2 * std::atan(angle));
@@ -204,7 +205,7 @@ double LampField::Solver::first_order(const HalfTangentDensity& line, double rad
 }
 
 // Between the nodes of the radius the source is linear once it is freed of most of its decay.
-void LampField::Solver::march(double radius, double h, std::vector<Step>& steps) const {
+void LampRadianceTable::Solver::march(double radius, double h, std::vector<Step>& steps) const {
     constexpr double k_reach = 20;
     const double min_step = is_coarse_ ? 0.004 : 0.002, max_step = is_coarse_ ? 0.8 : 0.4;
     const double growth = is_coarse_ ? 0.6 : 0.3;
@@ -235,7 +236,7 @@ void LampField::Solver::march(double radius, double h, std::vector<Step>& steps)
     }
 }
 
-void LampField::Solver::find_next_order() {
+void LampRadianceTable::Solver::find_next_order() {
     parallel_for(nr_, [&](std::size_t i) {
         double* source = &source_[i * nh_];
         std::fill(source, source + nh_, 0.0);
@@ -260,8 +261,9 @@ void LampField::Solver::find_next_order() {
     });
 }
 
-LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-                     double min_albedo, double max_albedo, const Fineness& fineness)
+LampRadianceTable::LampRadianceTable(const HalfTangentDensity& direction,
+                                     const HalfTangentDensity& line, double min_albedo,
+                                     double max_albedo, const Fineness& fineness)
     : phase_(direction), line_(line), line_in_table_(line.mass() - line.mass_to(k_angles.front())) {
     // An order that adds less than this is the last; what lies near the end of the table counts for
     // nothing in that.
@@ -269,8 +271,7 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
     const std::size_t nr = k_radii.count(), nh = k_angles.count();
     min_albedo_ = std::clamp(min_albedo, k_min_albedo, k_max_albedo - 1e-3);
     albedo_step_ =
-        (std::clamp(max_albedo, min_albedo_ + 1e-3, k_max_albedo) - min_albedo_) /
-        (k_albedos - 1);
+        (std::clamp(max_albedo, min_albedo_ + 1e-3, k_max_albedo) - min_albedo_) / (k_albedos - 1);
     std::array<double, k_albedos> albedo{}, power{};
     for (std::size_t k = 0; k < k_albedos; ++k)
         power[k] = albedo[k] = min_albedo_ + albedo_step_ * static_cast<double>(k);
@@ -308,8 +309,7 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
             constexpr double k_min_multiple = 1e-3;  // share of all
             const double value = all[k][q];
             all_.push_back(log_of(value));
-            more_.push_back(
-                log_of(std::max(value - albedo[k] * once[q], k_min_multiple * value)));
+            more_.push_back(log_of(std::max(value - albedo[k] * once[q], k_min_multiple * value)));
             source_.push_back(log_of(sources[k][q]));
         }
         for (std::size_t i = 0; i < nr; ++i) {
@@ -342,7 +342,7 @@ LampField::LampField(const HalfTangentDensity& direction, const HalfTangentDensi
     }
 }
 
-LampField::Place LampField::at(double radius, double albedo) const {
+LampRadianceTable::Place LampRadianceTable::at(double radius, double albedo) const {
     const std::size_t nr = k_radii.count(), nh = k_angles.count();
     const OctaveNodes::At r = k_radii.at(radius);
     const double x = std::clamp((albedo - min_albedo_) / albedo_step_, 0.0, k_albedos - 1.0);
@@ -362,7 +362,8 @@ LampField::Place LampField::at(double radius, double albedo) const {
     return place;
 }
 
-double LampField::look_up(const std::vector<float>& table, const Place& place, double h) const {
+double LampRadianceTable::look_up(const std::vector<float>& table, const Place& place,
+                                  double h) const {
     const OctaveNodes::At a = k_angles.at(h);
     const auto t = static_cast<float>(a.t);
     float sum = -place.beyond;
@@ -373,12 +374,12 @@ double LampField::look_up(const std::vector<float>& table, const Place& place, d
     return static_cast<double>(std::exp(sum));
 }
 
-double LampField::below_table(double h) const {
+double LampRadianceTable::below_table(double h) const {
     if (!(h < k_angles.front()) || !(line_in_table_ > 0)) return 1;
     return (line_.mass() - line_.mass_to(h)) / line_in_table_;
 }
 
-double LampField::flux(const Place& place) const {
+double LampRadianceTable::flux(const Place& place) const {
     float sum = -place.beyond;
     for (std::size_t i = 0; i < 4; ++i)
         sum += place.weight[i] * flux_[place.row[i] / k_angles.count()];

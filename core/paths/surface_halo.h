@@ -22,7 +22,7 @@ namespace uw {
 ///
 /// Computed for cells of one or some pixels of the whole image, whatever part of it is rendered;
 /// those of small images, whose pixels show more than one cell tells, are parts of pixels.
-class SurfaceGlow {
+class SurfaceHalo {
   public:
     /// Sets the radiance at the camera of a sample, which is number `index` of `light`, by channel.
     using Radiance = std::function<void(const SurfaceSample&, const SurfaceLight& light,
@@ -33,7 +33,7 @@ class SurfaceGlow {
 
     /// For `channels` channels, each of a band: channel % band_count. `cells`: at most. Reads the
     /// references only here.
-    SurfaceGlow(const RaySource& rays, const LitScene& scene, const SurfaceLighting& lighting,
+    SurfaceHalo(const RaySource& rays, const LitScene& scene, const SurfaceLighting& lighting,
                 const DistanceIntervals& intervals, std::size_t channels, int cells,
                 const Radiance& radiance, std::span<const Position> nodes);
 

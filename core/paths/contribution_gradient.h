@@ -8,14 +8,15 @@ namespace uw {
 
 /// Gathers the derivatives of a number by something that light meets on its way, from those by the
 /// light of its paths. For one thread.
-class TermGradient {
+class ContributionGradient {
   public:
-    virtual ~TermGradient() = default;
-    /// PathTerms::turn. One from the camera begins anew, after finish(); numbers count from 0.
-    virtual int turn(int before, const PathTurn& turn) = 0;
+    virtual ~ContributionGradient() = default;
+    /// ContributionSink::turn. One from the camera begins anew, after finish(); numbers count from
+    /// 0.
+    virtual int add_vertex(int before, const PathVertex& vertex) = 0;
     /// The number changes by worth[band] in proportion to the term's light: its derivative by that,
     /// times it.
-    virtual void add(const PathTerm& term, std::span<const double> worth) = 0;
+    virtual void add(const PathContribution& term, std::span<const double> worth) = 0;
     /// Hands back what all terms since the last camera turn are worth.
     virtual void finish() = 0;
 };

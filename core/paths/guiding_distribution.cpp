@@ -1,4 +1,4 @@
-#include "core/paths/lamp_guides.h"
+#include "core/paths/guiding_distribution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ double sum_of_guiding_bands(const Spectrum& weights, std::size_t bands) {
 struct Depth {
     double tau = 0, albedo = 0;
 
-    Depth(const GuideTables& tables, std::size_t band, double length,
+    Depth(const GuidingTables& tables, std::size_t band, double length,
           std::span<const double> column)
         : tau(tables.optics.attenuation().optical_depth(band, length, column)) {
         if (!(tau > 0)) return;
@@ -55,8 +55,8 @@ double guided_spread(const Lamp& lamp, double distance) {
 
 }  // namespace
 
-GuideTables::GuideTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
-                         const LampGathering& of_lamps)
+GuidingTables::GuidingTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
+                             const NextEventEstimator& of_lamps)
     : optics(of_optics),
       scattering(of_scattering),
       lamps(of_lamps),
@@ -71,11 +71,12 @@ GuideTables::GuideTables(const WaterOptics& of_optics, const ScatteringTables& o
         constituents_scattering.push_back(sum(constituent.per_unit));
 }
 
-void LampGuides::find(const GuideTables& tables, const Point3& x, const Spectrum& weights) {
+void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
+                               const Spectrum& weights) {
     tables_ = &tables;
     guides_.clear();
     const WaterOptics& optics = tables.optics;
-    const LampField& field = tables.scattering.field();
+    const LampRadianceTable& field = tables.scattering.field();
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
     const std::size_t bands = optics.bands(), stride = band_stride(bands);
     const double all = sum_of_guiding_bands(weights, bands);
@@ -116,8 +117,8 @@ void LampGuides::find(const GuideTables& tables, const Point3& x, const Spectrum
     }
 }
 
-double LampGuides::radiance(const Vector3& direction) const {
-    const LampField& field = tables_->scattering.field();
+double GuidingDistribution::radiance(const Vector3& direction) const {
+    const LampRadianceTable& field = tables_->scattering.field();
     double light = 0;
     for (const Guide& guide : guides_) {
         const double h = half_tangent_between(guide.direction, direction);
@@ -129,8 +130,8 @@ double LampGuides::radiance(const Vector3& direction) const {
     return light;
 }
 
-double LampGuides::multiple(const Vector3& direction) const {
-    const LampField& field = tables_->scattering.field();
+double GuidingDistribution::multiple(const Vector3& direction) const {
+    const LampRadianceTable& field = tables_->scattering.field();
     double light = 0;
     for (const Guide& guide : guides_)
         light += guide.scale *
@@ -138,14 +139,14 @@ double LampGuides::multiple(const Vector3& direction) const {
     return light;
 }
 
-double LampGuides::source(const Point3& y, const Vector3& direction) const {
-    const LampField& field = tables_->scattering.field();
+double GuidingDistribution::source(const Point3& y, const Vector3& direction) const {
+    const LampRadianceTable& field = tables_->scattering.field();
     double light = 0;
     for (const Guide& guide : guides_) {
         const Lamp& lamp = (*tables_->optics.scene().emitters)[guide.lamp];
         const Vector3 to_lamp = lamp.origin(y) - y;
         const double length = std::max(glm::length(to_lamp), 1e-9);
-        const LampField::Place place =
+        const LampRadianceTable::Place place =
             field.at(std::max(length * guide.attenuation, k_guide_min_depth), guide.albedo);
         light += guide.intensity * guided_intensity(lamp, -to_lamp) * place.radius * place.radius /
                  guided_spread(lamp, length) *
@@ -154,10 +155,10 @@ double LampGuides::source(const Point3& y, const Vector3& direction) const {
     return light;
 }
 
-double guessed_reflection(const GuideTables& tables, const SurfaceHit& hit,
-                          const Spectrum& weights) {
+double estimated_reflection(const GuidingTables& tables, const SurfaceHit& hit,
+                            const Spectrum& weights) {
     const WaterOptics& optics = tables.optics;
-    const LampField& field = tables.scattering.field();
+    const LampRadianceTable& field = tables.scattering.field();
     thread_local std::vector<double> column;
     column.resize(optics.constituents());
     const std::size_t bands = optics.bands(), stride = band_stride(bands);

@@ -1,4 +1,4 @@
-#include "core/paths/lamp_gathering.h"
+#include "core/paths/next_event_estimator.h"
 
 #include <algorithm>
 #include <array>
@@ -309,17 +309,17 @@ struct GatheringWorkspace {
 
 }  // namespace
 
-LampGathering::LampGathering(const WaterOptics& optics, const ScatteringTables& tables,
-                             std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
-                             std::vector<std::size_t> emitters)
+NextEventEstimator::NextEventEstimator(const WaterOptics& optics, const ScatteringTables& tables,
+                                       std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
+                                       std::vector<std::size_t> emitters)
     : optics_(optics),
       tables_(tables),
       evenness_(optics.scene()),
       deep_shadows_(std::move(deep_shadows)),
       emitters_(std::move(emitters)) {}
 
-void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
-                                   std::span<double> column) const {
+void NextEventEstimator::column_to_lamp(std::size_t lamp, const Point3& x,
+                                        std::span<double> column) const {
     if (column.empty()) return;
     if (deep_shadows_.empty())
         optics_.scene().field->column((*optics_.scene().emitters)[lamp].origin(x), x, column);
@@ -327,8 +327,8 @@ void LampGathering::column_to_lamp(std::size_t lamp, const Point3& x,
         deep_shadows_[lamp]->columns(std::span(&x, 1), column);
 }
 
-void LampGathering::gather_from_water(const WaterSegment& segment, const PathState& state,
-                                      PathRandom& random, PathTerms& terms) const {
+void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const PathState& state,
+                                             PathRandom& random, ContributionSink& sink) const {
     thread_local GatheringWorkspace w;
     const double of_lamp = random.next(), of_phase = random.next(), of_angle = random.next();
     const std::size_t phases = tables_.phase_count();
@@ -361,17 +361,19 @@ void LampGathering::gather_from_water(const WaterSegment& segment, const PathSta
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];
         radiance[b] *= factor * even[b] * beta * lamp.axis_intensity()[b] * state.throughput[b];
     }
-    PathTerm term = state.term(lamp.index(), radiance);
-    if (term.scatterings + term.reflections == 0) term.distance = s;  // on the camera ray
-    ++term.scatterings;
-    term.place = x;
-    term.emitter = emitters_[place->lamp];
-    terms.add(term);
+    PathContribution contribution = state.contribution(lamp.index(), radiance);
+    if (contribution.scatterings + contribution.reflections == 0)
+        contribution.distance = s;  // on the camera ray
+    ++contribution.scatterings;
+    contribution.place = x;
+    contribution.emitter = emitters_[place->lamp];
+    sink.add(contribution);
 }
 
-void LampGathering::gather_from_surface(const WaterSegment& segment, const Spectrum& transmittance,
-                                        const PathState& state, PathRandom& random,
-                                        PathTerms& terms) const {
+void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
+                                               const Spectrum& transmittance,
+                                               const PathState& state, PathRandom& random,
+                                               ContributionSink& sink) const {
     thread_local GatheringWorkspace w;
     double u = random.next();
     const std::size_t bands = optics_.bands();
@@ -383,10 +385,10 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
     if (reflection.emits()) {
         for (std::size_t b = 0; b < bands; ++b)
             radiance[b] = state.throughput[b] * transmittance[b] * reflection.emission()[b];
-        PathTerm term = state.term(k_no_lamp, radiance);
-        term.place = hit.position;
-        term.hit = &hit;
-        terms.add(term);
+        PathContribution contribution = state.contribution(k_no_lamp, radiance);
+        contribution.place = hit.position;
+        contribution.hit = &hit;
+        sink.add(contribution);
     }
     w.of_surface.clear();
     w.cumulative.clear();
@@ -422,12 +424,12 @@ void LampGathering::gather_from_surface(const WaterSegment& segment, const Spect
     for (std::size_t b = 0; b < bands; ++b)
         radiance[b] *= share.geometry / probability * lamp.axis_intensity()[b] * w.brdf[b] *
                        transmittance[b] * state.throughput[b];
-    PathTerm term = state.term(lamp.index(), radiance);
-    ++term.reflections;
-    term.place = hit.position;
-    term.hit = &hit;
-    term.emitter = emitters_[share.lamp];
-    terms.add(term);
+    PathContribution contribution = state.contribution(lamp.index(), radiance);
+    ++contribution.reflections;
+    contribution.place = hit.position;
+    contribution.hit = &hit;
+    contribution.emitter = emitters_[share.lamp];
+    sink.add(contribution);
 }
 
 }  // namespace uw

@@ -1,4 +1,4 @@
-#include "core/paths/indirect_light.h"
+#include "core/paths/irradiance_cache.h"
 
 #include <algorithm>
 #include <array>
@@ -21,15 +21,15 @@ constexpr double k_min_cosine = 0.5, k_max_slope = 0.35;
 }  // namespace
 
 /// The nearest points, by ascending distance.
-struct IndirectLight::Near {
+struct IrradianceCache::Near {
     std::array<std::size_t, k_max_near> index;
     std::array<double, k_max_near> square;  // of the distance [m^2]
     std::size_t count = 0;
 };
 
-class IndirectLight::Tree {
+class IrradianceCache::Tree {
   public:
-    explicit Tree(std::vector<SurfacePoint> points)
+    explicit Tree(std::vector<IrradianceRecord> points)
         : points_(std::move(points)),
           index_(3, *this, nanoflann::KDTreeSingleIndexAdaptorParams(8)) {
         if (!points_.empty()) index_.buildIndex();
@@ -37,7 +37,7 @@ class IndirectLight::Tree {
     Tree(const Tree&) = delete;
     Tree& operator=(const Tree&) = delete;
 
-    const SurfacePoint& point(std::size_t index) const { return points_[index]; }
+    const IrradianceRecord& point(std::size_t index) const { return points_[index]; }
 
     void find(const Point3& x, std::size_t count, Near& near) const {
         near.count = 0;
@@ -60,7 +60,7 @@ class IndirectLight::Tree {
     }
 
   private:
-    std::vector<SurfacePoint> points_;
+    std::vector<IrradianceRecord> points_;
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree>, Tree, 3,
                                         std::size_t>
         index_;
@@ -69,7 +69,7 @@ class IndirectLight::Tree {
 namespace {
 
 // How well a point at this squared distance tells of the hit but for its distance: 0..1.
-double agreement(const SurfacePoint& point, const SurfaceHit& hit, double square) {
+double agreement(const IrradianceRecord& point, const SurfaceHit& hit, double square) {
     const double cosine = glm::dot(point.normal, hit.normal);
     if (!(cosine > k_min_cosine)) return 0;
     const double off = glm::dot(hit.position - point.position, point.normal);
@@ -80,19 +80,19 @@ double agreement(const SurfacePoint& point, const SurfaceHit& hit, double square
 
 }  // namespace
 
-IndirectLight::IndirectLight(std::vector<SurfacePoint> points, std::vector<float> radiance,
-                             std::size_t values)
+IrradianceCache::IrradianceCache(std::vector<IrradianceRecord> points, std::vector<float> radiance,
+                                 std::size_t values)
     : tree_(std::make_unique<Tree>(std::move(points))),
       radiance_(std::move(radiance)),
       values_(values) {}
 
-IndirectLight::~IndirectLight() = default;
-IndirectLight::IndirectLight(IndirectLight&&) noexcept = default;
-IndirectLight& IndirectLight::operator=(IndirectLight&&) noexcept = default;
+IrradianceCache::~IrradianceCache() = default;
+IrradianceCache::IrradianceCache(IrradianceCache&&) noexcept = default;
+IrradianceCache& IrradianceCache::operator=(IrradianceCache&&) noexcept = default;
 
 // By a plane through the nearest points (local linear regression, Cleveland 1979): a mean of them
 // would tell of the inside of a lit side at its edges, and of less light where it is brightest.
-void IndirectLight::find(const SurfaceHit& hit, std::span<double> radiance) const {
+void IrradianceCache::find(const SurfaceHit& hit, std::span<double> radiance) const {
     std::ranges::fill(radiance, 0.0);
     Near near;
     tree_->find(hit.position, k_near, near);
@@ -121,8 +121,8 @@ void IndirectLight::find(const SurfaceHit& hit, std::span<double> radiance) cons
     for (double& value : radiance) value = std::max(value, 0.0);
 }
 
-bool IndirectLight::find_shares(const SurfaceHit& hit, const Near& near,
-                                std::span<double> shares) const {
+bool IrradianceCache::find_shares(const SurfaceHit& hit, const Near& near,
+                                  std::span<double> shares) const {
     // Keeps the plane level where the points say little of its slope.
     constexpr double k_ridge = 0.005;
     const double farthest = std::sqrt(std::max(near.square[near.count - 1], 1e-24));
@@ -130,7 +130,7 @@ bool IndirectLight::find_shares(const SurfaceHit& hit, const Near& near,
     const auto [u, v] = Tangents(hit.normal);
     double s0 = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
     for (std::size_t i = 0; i < near.count; ++i) {
-        const SurfacePoint& point = tree_->point(near.index[i]);
+        const IrradianceRecord& point = tree_->point(near.index[i]);
         const double agreeing = agreement(point, hit, near.square[i]);
         if (!(agreeing > 0)) continue;
         // The farthest counts for nearly nothing, so that the light is continuous.
@@ -159,7 +159,7 @@ bool IndirectLight::find_shares(const SurfaceHit& hit, const Near& near,
     return true;
 }
 
-bool IndirectLight::covers(const SurfaceHit& hit, double radius) const {
+bool IrradianceCache::covers(const SurfaceHit& hit, double radius) const {
     Near near;
     tree_->find(hit.position, k_max_near, near);
     for (std::size_t i = 0; i < near.count && near.square[i] <= radius * radius; ++i)

@@ -29,10 +29,10 @@ ScatterPlane scatter_plane(const RaySource& rays);
 ///
 /// Its step keeps what it needs of the pixels. The water is split into the integrator's slabs if it
 /// sums slabs, else into slabs that grow with the distance.
-class ForwardPass final : public Pass {
+class ForwardScatterPass final : public Pass {
   public:
-    ForwardPass();
-    ~ForwardPass() override;
+    ForwardScatterPass();
+    ~ForwardScatterPass() override;
 
     PassNeeds needs(const LayerPlan& plan) const override;
     void provide(LayerSupply& supply) const override;

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/paths/surface_glow.h"
+#include "core/paths/surface_halo.h"
 
 #include <gtest/gtest.h>
 
@@ -33,14 +33,14 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
     return xy / xx;
 }
 
-class GlowOfStripes : public testing::Test {
+class HaloOfStripes : public testing::Test {
   protected:
     static constexpr int k_width = 240, k_height = 40;
     // Of the table: a period of 11 degrees.
     static constexpr std::size_t k_frequency = 34;
     static constexpr double k_distance = 1.5;
 
-    GlowOfStripes() {
+    HaloOfStripes() {
         SceneDesc desc = pinhole_scene(k_width, k_height);
         const double focal = 0.5 * k_width / std::tan(glm::radians(40.0));
         desc.camera.intrinsics = {focal, focal, 0.5 * k_width, 0.5 * k_height};
@@ -53,7 +53,7 @@ class GlowOfStripes : public testing::Test {
     SphereSurface sphere_{{0, 0, 0}, k_distance};
 };
 
-TEST_F(GlowOfStripes, IsAsStrongInAllOfTheImage) {
+TEST_F(HaloOfStripes, IsAsStrongInAllOfTheImage) {
     const AssembledScene& assembled = renderer_.assemble();
     const RaySource& rays = *assembled.camera;
     LitScene scene = assembled.lit();
@@ -62,7 +62,7 @@ TEST_F(GlowOfStripes, IsAsStrongInAllOfTheImage) {
     const DistanceIntervals intervals(rays, scene);
     const auto bands = static_cast<std::size_t>(scene.medium->band_count());
     const double k = PointSpread::frequency(k_frequency);
-    std::vector<SurfaceGlow::Position> nodes;
+    std::vector<SurfaceHalo::Position> nodes;
     // Beyond its edges an image goes on with what is there, which is not stripes.
     for (int x = k_width / 6; x < k_width - k_width / 6; ++x)
         nodes.push_back({x + 0.5, 0.5 * k_height});
@@ -70,7 +70,7 @@ TEST_F(GlowOfStripes, IsAsStrongInAllOfTheImage) {
                              std::span<double> radiance) {
         std::ranges::fill(radiance, 1 + std::cos(k * azimuth(sample.ray.direction)));
     };
-    const SurfaceGlow glow(rays, scene, lighting, intervals, bands, k_width * k_height, stripes,
+    const SurfaceHalo glow(rays, scene, lighting, intervals, bands, k_width * k_height, stripes,
                            nodes);
     const PointSpread spread(*scene.medium, intervals, k_distance);
     ASSERT_EQ(glow.interval_count(), spread.interval_count());

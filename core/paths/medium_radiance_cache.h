@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/base/ray.h"
-#include "core/paths/lamp_field.h"
-#include "core/paths/lamp_gathering.h"
+#include "core/paths/lamp_radiance_table.h"
+#include "core/paths/next_event_estimator.h"
 #include "core/paths/path_segment.h"
 
 namespace uw {
@@ -14,10 +14,11 @@ namespace uw {
 /// lit up is itself a lamp to all around it, of which no lamp's field tells. It guides paths, so
 /// that it may be rough: nothing but their variance depends on it. All values are means over the
 /// bands. Thread safe.
-class ParticleLight {
+class MediumRadianceCache {
   public:
     /// Nothing, where there are no particles. Needs `lamps` only here.
-    ParticleLight(const WaterOptics& optics, const LampField& field, const LampGathering& lamps);
+    MediumRadianceCache(const WaterOptics& optics, const LampRadianceTable& field,
+                        const NextEventEstimator& lamps);
 
     bool empty() const { return cells_.empty(); }
     /// The light at a point among the particles, as if it came evenly from all sides, and 0

@@ -1,4 +1,4 @@
-#include "core/paths/path_vertex.h"
+#include "core/paths/direction_sampler.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +19,9 @@ Vector3 cosine_direction(const Vector3& normal, double u, double azimuth) {
 
 }  // namespace
 
-std::optional<Vector3> scatter_plainly(const ScatteringTables& tables, const WaterPoint& point,
-                                       const Vector3& direction, PathRandom& random,
-                                       std::span<double> throughput) {
+std::optional<Vector3> sample_phase_function(const ScatteringTables& tables,
+                                             const WaterPoint& point, const Vector3& direction,
+                                             PathRandom& random, std::span<double> throughput) {
     thread_local std::vector<double> cumulative;
     double u = random.next();
     const double v = random.next(), azimuth = random.next();
@@ -41,8 +41,9 @@ std::optional<Vector3> scatter_plainly(const ScatteringTables& tables, const Wat
     return direction_around(direction, phase.invert(v * phase.mass()), azimuth);
 }
 
-void PathVertex::scatter(const GuideTables& tables, const Point3& x, const Vector3& direction,
-                         const WaterPoint& point, const Spectrum& throughput) {
+void DirectionSampler::scatter(const GuidingTables& tables, const Point3& x,
+                               const Vector3& direction, const WaterPoint& point,
+                               const Spectrum& throughput) {
     tables_ = &tables;
     x_ = x;
     incoming_ = direction;
@@ -58,8 +59,8 @@ void PathVertex::scatter(const GuideTables& tables, const Point3& x, const Vecto
     find_guides(throughput);
 }
 
-void PathVertex::reflect(const GuideTables& tables, const WaterSegment& segment,
-                         const Spectrum& throughput) {
+void DirectionSampler::reflect(const GuidingTables& tables, const WaterSegment& segment,
+                               const Spectrum& throughput) {
     tables_ = &tables;
     x_ = segment.hit.position;
     incoming_ = segment.ray.direction;
@@ -71,12 +72,12 @@ void PathVertex::reflect(const GuideTables& tables, const WaterSegment& segment,
     find_guides(throughput);
 }
 
-void PathVertex::find_guides(const Spectrum& throughput) {
+void DirectionSampler::find_guides(const Spectrum& throughput) {
     throughput_ = throughput;
     guides_.find(*tables_, x_, throughput);
     guide_cumulative_.clear();
     double total = 0;
-    for (const LampGuides::Guide& guide : guides_.all()) {
+    for (const GuidingDistribution::Guide& guide : guides_.all()) {
         total += guide.irradiance;
         guide_cumulative_.push_back(total);
     }
@@ -84,25 +85,25 @@ void PathVertex::find_guides(const Spectrum& throughput) {
 
 // Resampled importance sampling (Talbot et al. 2005): stratified, as many of each kind, weighted
 // against each other by the balance heuristic.
-double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expected,
-                                   std::vector<CandidateDirection>& candidates) const {
+double DirectionSampler::sample_candidates(PathRandom& random, const ExpectedRadiance& expected,
+                                           std::vector<DirectionCandidate>& candidates) const {
     constexpr int k_of_each = 3;
     constexpr double k_golden = 0.6180339887498949;  // spreads azimuths evenly
-    constexpr double k_min_light = 0.3;            // relative to the candidates' mean
+    constexpr double k_min_light = 0.3;              // relative to the candidates' mean
     candidates.clear();
     const double u_lobe = random.next(), a_lobe = random.next();
     const double u_own = random.next(), v_own = random.next();
     if (point_ && (phase_cumulative_.empty() || !(phase_cumulative_.back() > 0))) return 0;
     const auto wrapped = [](double x) { return x - std::floor(x); };
-    const std::span<const LampGuides::Guide> guides = guides_.all();
+    const std::span<const GuidingDistribution::Guide> guides = guides_.all();
     const int of_lobes = guides.empty() ? 0 : k_of_each, of_own = 2 * k_of_each - of_lobes;
-    const LampField& field = tables_->scattering.field();
+    const LampRadianceTable& field = tables_->scattering.field();
     double sum = 0, responding = 0;
     for (int k = 0; k < of_lobes + of_own; ++k) {
-        CandidateDirection candidate;
+        DirectionCandidate candidate;
         if (k < of_lobes) {
             double u = (k + u_lobe) / of_lobes;
-            const LampGuides::Guide& guide = guides[choose(guide_cumulative_, u).index];
+            const GuidingDistribution::Guide& guide = guides[choose(guide_cumulative_, u).index];
             const HalfTangentDensity* lobe = &field.lobe(guide.place);
             if (guide.scattered_once > 0) {
                 u *= 2;
@@ -116,28 +117,28 @@ double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expe
         } else {
             const int i = k - of_lobes;
             candidate.direction =
-                own_direction(wrapped(u_own + i * k_golden), (i + v_own) / of_own,
-                              wrapped(u_own + a_lobe + i * k_golden * k_golden + 0.5));
+                sample_local(wrapped(u_own + i * k_golden), (i + v_own) / of_own,
+                             wrapped(u_own + a_lobe + i * k_golden * k_golden + 0.5));
         }
         const Vector3& direction = candidate.direction;
         if (segment_ && glm::dot(segment_->hit.geometric_normal, direction) <= 0) continue;
-        candidate.density = of_own * own_density(direction) +
-                            (of_lobes > 0 ? of_lobes * guide_density(direction) : 0);
-        candidate.responds = response_sum(direction);
+        candidate.density =
+            of_own * local_pdf(direction) + (of_lobes > 0 ? of_lobes * guide_pdf(direction) : 0);
+        candidate.response = target_density(direction);
         candidate.of_particles = tables_->particles.along({x_, direction}, k_far);
         candidate.light = guides_.radiance(direction) + candidate.of_particles + expected.ambient;
         if (expected.of_surface > 0 && glm::dot(expected.normal, direction) < 0)
             candidate.light += expected.of_surface;
         if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;
         sum += candidate.weight();
-        responding += candidate.responds / candidate.density;
+        responding += candidate.response / candidate.density;
         candidates.push_back(candidate);
     }
     if (candidates.empty()) return 0;
     // None is guessed far darker than the mean: what shines there after all would be too bright.
     const double least = k_min_light * sum / responding;
     sum = 0;
-    for (CandidateDirection& candidate : candidates) {
+    for (DirectionCandidate& candidate : candidates) {
         candidate.light = std::max(candidate.light, least);
         sum += candidate.weight();
     }
@@ -146,11 +147,11 @@ double PathVertex::draw_candidates(PathRandom& random, const ExpectedLight& expe
 
 // The density of the lobes that candidates are drawn from [1/sr]: a sun has two, of which one is
 // its light that is scattered once.
-double PathVertex::guide_density(const Vector3& direction) const {
-    const LampField& field = tables_->scattering.field();
+double DirectionSampler::guide_pdf(const Vector3& direction) const {
+    const LampRadianceTable& field = tables_->scattering.field();
     double sum = 0, before = 0;
     for (std::size_t j = 0; j < guide_cumulative_.size(); ++j) {
-        const LampGuides::Guide& guide = guides_.all()[j];
+        const GuidingDistribution::Guide& guide = guides_.all()[j];
         const HalfTangentDensity& lobe = field.lobe(guide.place);
         const double h = half_tangent_between(guide.direction, direction);
         double density = lobe.density(h) / lobe.mass();
@@ -164,17 +165,17 @@ double PathVertex::guide_density(const Vector3& direction) const {
 
 // `respond`, summed over the bands with the throughput; of a scattering, by what directions are
 // drawn from.
-double PathVertex::response_sum(const Vector3& direction) const {
-    if (point_) return phase_cumulative_.back() * own_density(direction);
+double DirectionSampler::target_density(const Vector3& direction) const {
+    if (point_) return phase_cumulative_.back() * local_pdf(direction);
     Spectrum values;
-    respond(direction, values);
+    eval(direction, values);
     double sum = 0;
     for (std::size_t b = 0; b < tables_->optics.bands(); ++b) sum += throughput_[b] * values[b];
     return sum;
 }
 
 // In proportion to the phase function or BRDF.
-Vector3 PathVertex::own_direction(double u, double v, double azimuth) const {
+Vector3 DirectionSampler::sample_local(double u, double v, double azimuth) const {
     if (point_) {
         const HalfTangentDensity& phase =
             tables_->scattering.directions[choose(phase_cumulative_, u).index];
@@ -188,7 +189,7 @@ Vector3 PathVertex::own_direction(double u, double v, double azimuth) const {
     return glm::normalize(incoming_ - 2 * glm::dot(incoming_, half) * half);
 }
 
-double PathVertex::own_density(const Vector3& direction) const {
+double DirectionSampler::local_pdf(const Vector3& direction) const {
     if (point_) {
         const double h = half_tangent_between(incoming_, direction);
         double sum = 0, before = 0;
@@ -207,7 +208,7 @@ double PathVertex::own_density(const Vector3& direction) const {
                half_vector_density(normal, -incoming_, direction, reflection_->roughness());
 }
 
-void PathVertex::respond(const Vector3& direction, Spectrum& values) const {
+void DirectionSampler::eval(const Vector3& direction, Spectrum& values) const {
     const std::size_t bands = tables_->optics.bands();
     if (point_) {
         thread_local std::vector<double> p;

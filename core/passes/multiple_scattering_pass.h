@@ -30,10 +30,10 @@ class WeightLattice {
 };
 
 /// Light that was scattered or reflected more than once, for the fast integrator: estimated by
-/// light paths at the nodes of a lattice over the image (MultipleNodes), smoothed between them
+/// light paths at the nodes of a lattice over the image (RadianceEstimator), smoothed between them
 /// (LatticeFit), and interpolated: the water's by image position and distance, that on surfaces by
 /// position among nodes that see the same surface. The reflectance and the water in front of the
-/// surface are the pixel's own. Of the water's light, the surfaces' glow (SurfaceGlow) is as sharp
+/// surface are the pixel's own. Of the water's light, the surfaces' halo (SurfaceHalo) is as sharp
 /// as they are: it is computed for all pixels, and what light paths find beside it is smoothed.
 ///
 /// Nodes, their random numbers and the number of their paths depend on the whole image, so that
@@ -44,11 +44,11 @@ class WeightLattice {
 /// (NodeLattice::find_errors). What is stated of the image (ImageProgress::multiple_error) is the
 /// RMS of that over the pixels, over the mean of all light. A transport without light paths, which
 /// a caller may put in the place of the scene's, leaves this light out.
-class AllLightPass final : public Pass {
+class MultipleScatteringPass final : public Pass {
   public:
     /// `share`: PathRequest::share.
-    explicit AllLightPass(double share = 1);
-    ~AllLightPass() override;
+    explicit MultipleScatteringPass(double share = 1);
+    ~MultipleScatteringPass() override;
 
     PassNeeds needs(const LayerPlan& plan) const override;
     void provide(LayerSupply& supply) const override;
@@ -58,8 +58,9 @@ class AllLightPass final : public Pass {
 
   private:
     double share_;
-    std::unique_ptr<class MultipleLight> light_;  // of the pixels, from run on; none: it is dark
-    std::unique_ptr<class ErrorSums> sums_;       // over the pixels, from run on
+    std::unique_ptr<class MultipleScattering>
+        light_;                              // of the pixels, from run on; none: it is dark
+    std::unique_ptr<class ErrorSums> sums_;  // over the pixels, from run on
 };
 
 }  // namespace uw

@@ -34,7 +34,7 @@ class Emission {
 };
 
 /// A part of a volume that glows: what stands for it where it lights others.
-struct GlowPart {
+struct EmissivePart {
     Point3 centre;       // of its light
     Spectrum intensity;  // in each direction, without water [W/sr]
     double radius = 0;   // of the sphere (LampFrame) whose light lies as far from its centre [m]
@@ -43,23 +43,23 @@ struct GlowPart {
 /// The parts of all light that `emission` makes of a field of one constituent, the grid's value: at
 /// most `count`, of the same light each but for the grain of the cells (the voxels, or those of a
 /// lattice of 2^21) that they consist of. Neighbours in the list are neighbours in space.
-std::vector<GlowPart> divide_glow(const ConcentrationField& field, const Emission& emission,
-                                  int count);
+std::vector<EmissivePart> divide_emission(const ConcentrationField& field, const Emission& emission,
+                                          int count);
 
 /// Every `count` neighbours in the list as one.
-std::vector<GlowPart> merged(std::span<const GlowPart> parts, int count);
+std::vector<EmissivePart> merged(std::span<const EmissivePart> parts, int count);
 
 /// A volume that gives off light.
-struct GlowingVolume {
+struct EmissiveVolume {
     std::shared_ptr<const ConcentrationField> field;  // of one constituent: the grid's value
     Emission emission;
-    std::vector<GlowPart> parts;
+    std::vector<EmissivePart> parts;
 };
 
 /// The same as a lamp of a scene.
-struct SceneGlow {
+struct SceneEmission {
     std::size_t lamp = 0;  // its index
-    std::shared_ptr<const GlowingVolume> volume;
+    std::shared_ptr<const EmissiveVolume> volume;
 };
 
 }  // namespace uw

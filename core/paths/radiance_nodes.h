@@ -11,7 +11,7 @@
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
 #include "core/paths/distance_intervals.h"
-#include "core/paths/indirect_light.h"
+#include "core/paths/irradiance_cache.h"
 #include "core/paths/path_tracer.h"
 
 namespace uw {
@@ -25,7 +25,7 @@ struct NodeSurface {
 };
 
 /// Light that was scattered or reflected more than once, at one image position.
-struct NodeLight {
+struct NodeRadiance {
     /// By interval of distance, group and band: radiance from the water within it, at the camera.
     std::vector<float> water;
     /// By group and band: indirect irradiance / pi, what a white surface would reflect, and then
@@ -40,13 +40,13 @@ struct NodeLight {
     double diffuse_variance = 0;
 };
 
-/// Standard errors of light on a surface, by band, as NodeLight has it.
+/// Standard errors of light on a surface, by band, as NodeRadiance has it.
 struct SurfaceErrors {
     std::vector<float> diffuse, glossy;
 };
 
 /// Estimates of that light, and what they belong to.
-struct MultipleNode {
+struct RadianceNode {
     bool has_ray = false;
     std::optional<NodeSurface> surface;
     double reach = 0;  // of the water along its ray [m]
@@ -54,14 +54,14 @@ struct MultipleNode {
     std::vector<float> weights, mean_weights;
     double mean_light = 0;  // roughly that of the ray, mean over the bands
     /// The light of its water and what a white surface would show, as guessed before any path.
-    double guessed_water = 0, guessed_surface = 0;
+    double estimated_water = 0, estimated_surface = 0;
     /// The camera's radiance per light on a white surface, by band, and its mean over the bands.
     std::vector<float> seen_of_band;
     double surface_seen = 0;
     /// What of its water's light the indirect light on surfaces makes, by band.
     std::vector<float> lit_indirect;
     /// Two independent estimates: what is decided by one is applied to the other.
-    std::array<NodeLight, 2> halves;
+    std::array<NodeRadiance, 2> halves;
     double water_share = 1, surface_share = 1;  // NodePaths'
     /// What a path of one kind brings, as means over the bands, and its work.
     struct Moments {
@@ -82,17 +82,17 @@ struct NodePaths {
 
     /// The numbers for a node, relative to these: of paths in the water, and of those from its
     /// surface.
-    double water_share(const MultipleNode& node) const;
-    double surface_share(const MultipleNode& node) const;
+    double water_share(const RadianceNode& node) const;
+    double surface_share(const RadianceNode& node) const;
 };
 
 /// Estimates nodes by light paths. Thread safe.
-class MultipleNodes {
+class RadianceEstimator {
   public:
     /// All references must outlive this object; `transport` has paths. `groups`: one for all light,
     /// or one per lamp and one for emission.
-    MultipleNodes(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
-                  const IntervalWeights& weights, std::size_t groups)
+    RadianceEstimator(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
+                      const IntervalWeights& weights, std::size_t groups)
         : rays_(rays),
           scene_(scene),
           transport_(transport),
@@ -110,18 +110,18 @@ class MultipleNodes {
         std::uint64_t seed = 0;
     };
     /// Begins a node with the indirect light on its surface, if it has one.
-    void estimate_surface(const Place& place, const NodePaths& paths, MultipleNode& node) const;
+    void estimate_surface(const Place& place, const NodePaths& paths, RadianceNode& node) const;
     /// The surfaces that some paths from a node meet first (PathTracer::find_lit_surface), and
     /// where its ray begins in the water.
     Point3 find_lit_surfaces(const Place& place, int paths,
                              std::vector<SurfaceSample>& samples) const;
     /// Adds the light of the water to a node that was begun. `indirect`: on all surfaces, by group
     /// and band. `typical_light`: the mean of the begun nodes' `mean_light`; it guides paths.
-    void estimate_water(const Place& place, const NodePaths& paths, const IndirectLight& indirect,
-                        double typical_light, MultipleNode& node) const;
+    void estimate_water(const Place& place, const NodePaths& paths, const IrradianceCache& indirect,
+                        double typical_light, RadianceNode& node) const;
     /// The light on one surface sample alone, by this many paths; and its errors, as far as two
     /// halves of the paths can tell.
-    void estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light,
+    void estimate_surface(const SurfaceSample& sample, int paths, NodeRadiance& light,
                           SurfaceErrors& errors) const;
     /// What the sample's specular lobe mirrors (PathTracer::trace_mirrored), by this many paths:
     /// the radiance at the sample, by group and band, and the sum over the paths of the squares of
@@ -135,8 +135,8 @@ class MultipleNodes {
     struct Workspace;
 
     static Workspace& workspace_of_thread();
-    void begin(const SurfaceSample& sample, bool has_hit, Workspace& w, MultipleNode& node) const;
-    void trace_surface(std::uint64_t seed, int paths, Workspace& w, MultipleNode& node) const;
+    void begin(const SurfaceSample& sample, bool has_hit, Workspace& w, RadianceNode& node) const;
+    void trace_surface(std::uint64_t seed, int paths, Workspace& w, RadianceNode& node) const;
 
     const RaySource& rays_;
     const LitScene& scene_;
@@ -153,17 +153,17 @@ inline constexpr double k_min_node_cosine = 0.96;
 /// How much of the water of an interval lies before a node's surface: of `enough` of it the node
 /// tells what light there is, of `little` if no other node does.
 enum class NodeReach : unsigned char { none, little, enough };
-inline NodeReach reach_into(const MultipleNode& node, const DistanceIntervals& intervals,
+inline NodeReach reach_into(const RadianceNode& node, const DistanceIntervals& intervals,
                             std::size_t interval) {
     constexpr double k_min_share = 0.3;
     if (node.mean_weights.empty() || node.reach <= intervals.begin(interval))
         return NodeReach::none;
     return intervals.share(interval, 0, node.reach) >= k_min_share ? NodeReach::enough
-                                                                     : NodeReach::little;
+                                                                   : NodeReach::little;
 }
 
 /// Whether two nodes tell of light on the same surface.
-inline bool see_same_surface(const MultipleNode& a, const MultipleNode& b) {
+inline bool see_same_surface(const RadianceNode& a, const RadianceNode& b) {
     return a.surface && b.surface && a.surface->object_id == b.surface->object_id &&
            a.surface->is_glossy == b.surface->is_glossy &&
            glm::dot(a.surface->normal, b.surface->normal) >= k_min_node_cosine;

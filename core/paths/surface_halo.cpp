@@ -1,4 +1,4 @@
-#include "core/paths/surface_glow.h"
+#include "core/paths/surface_halo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,16 +81,16 @@ class WaterInView {
 }  // namespace
 
 /// Blurs one channel interval by interval.
-class SurfaceGlow::Spreading {
+class SurfaceHalo::Spreading {
   public:
-    Spreading(const SurfaceGlow& glow, const PointSpread& spread, std::span<const BlurFit> fits)
-        : glow_(glow), spread_(spread), fits_(fits) {}
+    Spreading(const SurfaceHalo& halo, const PointSpread& spread, std::span<const BlurFit> fits)
+        : halo_(halo), spread_(spread), fits_(fits) {}
 
     /// The light of a channel that is scattered last in `interval`, by cell. Valid until the next
     /// call.
     const Grid2D<float>& part(std::size_t interval, std::size_t band, double begin,
                               std::span<const float> source) {
-        const Grid2D<Cell>& cells = glow_.cells_;
+        const Grid2D<Cell>& cells = halo_.cells_;
         find_level_weights(interval, band);
         pyramid_.begin(cells.width(), cells.height());
         const std::size_t distances = spread_.distances().size();
@@ -108,7 +108,7 @@ class SurfaceGlow::Spreading {
                 const float t = cell.place - static_cast<float>(d);
                 const float u = cell.scale - static_cast<float>(scale);
                 const float* weight =
-                    &weights_[(level * glow_.angles_.size() + scale) * distances + d];
+                    &weights_[(level * halo_.angles_.size() + scale) * distances + d];
                 const float* next = weight + distances;
                 const float lower = weight[0] + t * (weight[1] - weight[0]);
                 const float upper = next[0] + t * (next[1] - next[0]);
@@ -122,11 +122,11 @@ class SurfaceGlow::Spreading {
   private:
     std::size_t levels() const {
         return static_cast<std::size_t>(
-            BlurPyramid::level_count(glow_.cells_.width(), glow_.cells_.height()));
+            BlurPyramid::level_count(halo_.cells_.width(), halo_.cells_.height()));
     }
 
     void find_level_weights(std::size_t interval, std::size_t band) {
-        const std::size_t scales = glow_.angles_.size(), distances = spread_.distances().size();
+        const std::size_t scales = halo_.angles_.size(), distances = spread_.distances().size();
         weights_.resize(levels() * scales * distances);
         greatest_.assign(levels(), 0.0F);
         std::vector<double> fitted(levels());
@@ -142,7 +142,7 @@ class SurfaceGlow::Spreading {
         }
     }
 
-    const SurfaceGlow& glow_;
+    const SurfaceHalo& halo_;
     const PointSpread& spread_;
     std::span<const BlurFit> fits_;  // by scale
     BlurPyramid pyramid_;
@@ -151,7 +151,7 @@ class SurfaceGlow::Spreading {
     std::vector<float> greatest_;  // by level
 };
 
-SurfaceGlow::SurfaceGlow(const RaySource& rays, const LitScene& scene,
+SurfaceHalo::SurfaceHalo(const RaySource& rays, const LitScene& scene,
                          const SurfaceLighting& lighting, const DistanceIntervals& intervals,
                          std::size_t channels, int cells, const Radiance& radiance,
                          std::span<const Position> nodes)
@@ -221,7 +221,7 @@ SurfaceGlow::SurfaceGlow(const RaySource& rays, const LitScene& scene,
     source_ = {};
 }
 
-void SurfaceGlow::trace(const RaySource& rays, const LitScene& scene,
+void SurfaceHalo::trace(const RaySource& rays, const LitScene& scene,
                         const SurfaceLighting& lighting, const Radiance& radiance) {
     Grid2D<float> angles(cells_.width(), cells_.height());
     parallel_for(static_cast<std::size_t>(cells_.height()), [&](std::size_t row) {
@@ -290,7 +290,7 @@ void SurfaceGlow::trace(const RaySource& rays, const LitScene& scene,
         cells_[i].scale = static_cast<float>(std::min(place_of(angles[i]), last - 1e-3));
 }
 
-void SurfaceGlow::find_corners(double x, double y, std::vector<Corner>& corners) const {
+void SurfaceHalo::find_corners(double x, double y, std::vector<Corner>& corners) const {
     const double u = std::clamp(x / spacing_ - 0.5, 0.0, cells_.width() - 1.0);
     const double v = std::clamp(y / spacing_ - 0.5, 0.0, cells_.height() - 1.0);
     const int i = static_cast<int>(u), j = static_cast<int>(v);
@@ -302,7 +302,7 @@ void SurfaceGlow::find_corners(double x, double y, std::vector<Corner>& corners)
                Corner{cells_.index(right, below), (u - i) * (v - j)}};
 }
 
-void SurfaceGlow::find_cells_of_pixel(double x, double y, std::vector<Corner>& cells) const {
+void SurfaceHalo::find_cells_of_pixel(double x, double y, std::vector<Corner>& cells) const {
     if (cells_of_pixel_ == 1) return find_corners(x, y, cells);
     const auto first = [&](double at, int count) {
         return std::clamp(static_cast<int>(std::lround((at - 0.5) / spacing_)), 0,
@@ -316,7 +316,7 @@ void SurfaceGlow::find_cells_of_pixel(double x, double y, std::vector<Corner>& c
             cells.push_back({cells_.index(i + right, j + below), share});
 }
 
-void SurfaceGlow::add(double x, double y, double distance, double weight,
+void SurfaceHalo::add(double x, double y, double distance, double weight,
                       std::span<double> radiance) const {
     if (intervals_ == 0) return;
     thread_local std::vector<Corner> cells;

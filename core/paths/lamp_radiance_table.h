@@ -15,7 +15,7 @@ namespace uw {
 ///
 /// Tables of the order n + 1 are those of order n, scattered once more and marched along rays; they
 /// are made for albedo 1 and added up for three albedos at once.
-class LampField {
+class LampRadianceTable {
   public:
     /// How closely it is found.
     struct Fineness {
@@ -24,10 +24,10 @@ class LampField {
     };
 
     /// Not to be looked up.
-    LampField() = default;
+    LampRadianceTable() = default;
     /// `direction`, `line`: ScatteringTables::directions and lines of the phase function.
-    LampField(const HalfTangentDensity& direction, const HalfTangentDensity& line,
-              double min_albedo, double max_albedo, const Fineness& fineness);
+    LampRadianceTable(const HalfTangentDensity& direction, const HalfTangentDensity& line,
+                      double min_albedo, double max_albedo, const Fineness& fineness);
 
     /// Where to look up, for one distance and albedo.
     struct Place {

@@ -1,5 +1,5 @@
 // ctest labels: analytic unit
-#include "core/paths/indirect_light.h"
+#include "core/paths/irradiance_cache.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ SurfaceHit hit_at(const Point3& position, const Vector3& normal) {
 }
 
 /// Points scattered over a square of the plane z = `z`, with two values that are linear in x and y.
-void scatter_points(double z, double normal, double offset, std::vector<SurfacePoint>& points,
+void scatter_points(double z, double normal, double offset, std::vector<IrradianceRecord>& points,
                     std::vector<float>& radiance) {
     std::mt19937 rng(7);
     std::uniform_real_distribution<double> place(-1, 1);
@@ -32,15 +32,15 @@ void scatter_points(double z, double normal, double offset, std::vector<SurfaceP
 
 class IndirectLights : public testing::Test {
   protected:
-    IndirectLight light() const { return {points_, radiance_, 2}; }
+    IrradianceCache light() const { return {points_, radiance_, 2}; }
 
-    std::vector<SurfacePoint> points_;
+    std::vector<IrradianceRecord> points_;
     std::vector<float> radiance_;
 };
 
 TEST_F(IndirectLights, AreLinearBetweenThePointsAndAtEdges) {
     scatter_points(0, 1, 0, points_, radiance_);
-    const IndirectLight found = light();
+    const IrradianceCache found = light();
     std::array<double, 2> radiance{};
     for (const Point3& x : {Point3{0.13, -0.21, 0}, Point3{0.999, 0.4, 0}, Point3{-0.6, -1, 0}}) {
         found.find(hit_at(x, {0, 0, 1}), radiance);
@@ -54,7 +54,7 @@ TEST_F(IndirectLights, AreLinearBetweenThePointsAndAtEdges) {
 TEST_F(IndirectLights, AreThoseOfTheSideThatIsHit) {
     scatter_points(0, 1, 0, points_, radiance_);
     scatter_points(-0.001, -1, 100, points_, radiance_);
-    const IndirectLight found = light();
+    const IrradianceCache found = light();
     std::array<double, 2> radiance{};
     found.find(hit_at({0.1, 0.2, 0}, {0, 0, 1}), radiance);
     EXPECT_NEAR(radiance[0], 3.1, 0.02);
@@ -71,7 +71,7 @@ TEST_F(IndirectLights, AreDarkWithoutPoints) {
 
 TEST_F(IndirectLights, CoverWhatIsNearAndFacesTheSameWay) {
     scatter_points(0, 1, 0, points_, radiance_);
-    const IndirectLight found = light();
+    const IrradianceCache found = light();
     EXPECT_TRUE(found.covers(hit_at({0.5, 0.5, 0}, {0, 0, 1}), 0.1));
     EXPECT_FALSE(found.covers(hit_at({1.5, 0.5, 0}, {0, 0, 1}), 0.1));
     EXPECT_FALSE(found.covers(hit_at({0.5, 0.5, 0}, {0, 0, -1}), 0.1));

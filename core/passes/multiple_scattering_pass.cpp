@@ -1,4 +1,4 @@
-#include "core/passes/all_light_pass.h"
+#include "core/passes/multiple_scattering_pass.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
 #include "core/passes/in_scatter_lattice.h"
-#include "core/paths/indirect_light.h"
-#include "core/paths/multiple_nodes.h"
+#include "core/paths/irradiance_cache.h"
 #include "core/paths/node_lattice.h"
 #include "core/paths/node_smoothing.h"
-#include "core/paths/surface_glow.h"
+#include "core/paths/radiance_nodes.h"
+#include "core/paths/surface_halo.h"
 
 namespace uw {
 
@@ -78,12 +78,12 @@ void WeightLattice::find(double x, double y, std::vector<float>& weights) const 
 
 namespace {
 
-/// The radiance of surfaces that SurfaceGlow blurs: by direct light and emission, which are exact,
+/// The radiance of surfaces that SurfaceHalo blurs: by direct light and emission, which are exact,
 /// and by the indirect light.
-class GlowSource {
+class HaloSource {
   public:
     /// The references must outlive this object.
-    GlowSource(const PixelRenderer& pixels, const IndirectLight& indirect)
+    HaloSource(const PixelRenderer& pixels, const IrradianceCache& indirect)
         : pixels_(pixels),
           indirect_(indirect),
           bands_(static_cast<std::size_t>(pixels.band_count())) {}
@@ -95,11 +95,11 @@ class GlowSource {
 
   private:
     const PixelRenderer& pixels_;
-    const IndirectLight& indirect_;
+    const IrradianceCache& indirect_;
     std::size_t bands_;
 };
 
-void GlowSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& light,
+void HaloSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& light,
                                std::size_t index, std::span<double> radiance) const {
     const std::size_t groups = radiance.size() / bands_;
     const LitScene& scene = pixels_.scene();
@@ -133,7 +133,7 @@ struct MultipleLightOptions {
     int paths = 0;       // in the whole image, of each kind, at its nodes, at most
     double error = 0;    // standard error for which fewer will do, relative to the image's mean
     int nodes = 0;       // about as many
-    int cells = 0;       // of the surfaces' glow, at most
+    int cells = 0;       // of the surfaces' halo, at most
     bool lamps = false;  // each lamp's light by itself
 };
 
@@ -159,11 +159,11 @@ int spacing_for(const RaySource& rays, int nodes) {
 
 }  // namespace
 
-/// The light of AllLightPass in one image.
-class MultipleLight {
+/// The light of MultipleScatteringPass in one image.
+class MultipleScattering {
   public:
     /// `pixels` must outlive this object; its transport has paths.
-    MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options);
+    MultipleScattering(const PixelRenderer& pixels, const MultipleLightOptions& options);
 
     /// Estimates the light of the pixels of `window`. Throws Interrupted if the work is to stop,
     /// InputError if the nodes do not fit into free memory.
@@ -180,7 +180,7 @@ class MultipleLight {
         double weight;
     };
 
-    void take_away_glow(NodeLattice& lattice, const IndirectLight& indirect);
+    void take_away_halo(NodeLattice& lattice, const IrradianceCache& indirect);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
                       std::vector<Corner>& matches) const;
@@ -188,8 +188,8 @@ class MultipleLight {
                       std::vector<Corner>& matches) const;
     struct Errors;
 
-    double share_of_glow(double scattered, double distance, std::size_t band) const;
-    void spread_glow(const MultipleNode& node, std::span<float> glow) const;
+    double share_of_halo(double scattered, double distance, std::size_t band) const;
+    void spread_halo(const RadianceNode& node, std::span<float> halo) const;
     void add_water(const PixelView& view, std::span<double> light, Errors& errors) const;
     void add_volume(const PixelView& view, PixelResult& result, Errors& errors) const;
     void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
@@ -202,14 +202,14 @@ class MultipleLight {
     int spacing_ = 1;  // of the nodes [pixels]
     DistanceIntervals intervals_;
     IntervalWeights weights_;
-    MultipleNodes estimator_;
+    RadianceEstimator estimator_;
     WeightLattice weight_lattice_;  // from prepare on, as the following
     Grid2D<SmoothNode> nodes_;
-    std::optional<SurfaceGlow> glow_;
+    std::optional<SurfaceHalo> halo_;
 };
 
 /// Standard errors of a pixel's light, by band.
-struct MultipleLight::Errors {
+struct MultipleScattering::Errors {
     Spectrum water;     // of what nodes tell of the water
     Spectrum surfaces;  // of the indirect light on surfaces, seen directly or through scattering
     // Sums of the light that glossy surfaces mirror, and of its squares, by paths of the pixel's
@@ -227,7 +227,8 @@ struct MultipleLight::Errors {
     }
 };
 
-MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOptions& options)
+MultipleScattering::MultipleScattering(const PixelRenderer& pixels,
+                                       const MultipleLightOptions& options)
     : pixels_(pixels),
       options_(options),
       bands_(static_cast<std::size_t>(pixels.band_count())),
@@ -237,7 +238,7 @@ MultipleLight::MultipleLight(const PixelRenderer& pixels, const MultipleLightOpt
       estimator_(pixels.rays(), pixels.scene(), pixels.transport(), weights_,
                  options.lamps ? static_cast<std::size_t>(pixels.lamp_count()) + 1 : 1) {}
 
-void MultipleLight::prepare(const PixelWindow& window, const ShareCallback& progress) {
+void MultipleScattering::prepare(const PixelWindow& window, const ShareCallback& progress) {
     const RaySource& rays = pixels_.rays();
     NodeLattice lattice(estimator_, NodeLattice::Positions::over(rays, spacing_));
     // The corners of all cells in the window, and what these are fitted to.
@@ -251,47 +252,47 @@ void MultipleLight::prepare(const PixelWindow& window, const ShareCallback& prog
         plan_paths(estimator_, {static_cast<double>(options_.paths),
                                 static_cast<int>(lattice.all().size()), options_.error});
     constexpr double k_share_of_surfaces = 0.4;  // of the time
-    const IndirectLight indirect =
+    const IrradianceCache indirect =
         lattice.light_surfaces(paths, [&](double share) { progress(k_share_of_surfaces * share); });
     lattice.light_water(nodes, paths, indirect, [&](double share) {
         progress(k_share_of_surfaces + (1 - k_share_of_surfaces) * share);
     });
-    take_away_glow(lattice, indirect);
+    take_away_halo(lattice, indirect);
     weight_lattice_ = WeightLattice(rays, weights_, window);
     nodes_ = lattice.smoothed(nodes, intervals_);
     lattice.find_errors(nodes, nodes_);
 }
 
-// Computes the glow, and leaves in the nodes what they hold beside it.
-void MultipleLight::take_away_glow(NodeLattice& lattice, const IndirectLight& indirect) {
+// Computes the halo, and leaves in the nodes what they hold beside it.
+void MultipleScattering::take_away_halo(NodeLattice& lattice, const IrradianceCache& indirect) {
     const std::size_t groups = estimator_.groups();
-    const GlowSource source(pixels_, indirect);
+    const HaloSource source(pixels_, indirect);
     const auto radiance = [&](const SurfaceSample& sample, const SurfaceLight& light,
                               std::size_t index, std::span<double> channels) {
         source.find_radiance(sample, light, index, channels);
     };
-    Grid2D<MultipleNode>& raw = lattice.raw();
-    std::vector<SurfaceGlow::Position> positions;
+    Grid2D<RadianceNode>& raw = lattice.raw();
+    std::vector<SurfaceHalo::Position> positions;
     for (int j = 0; j < raw.height(); ++j)
         for (int i = 0; i < raw.width(); ++i)
             positions.push_back({lattice.place(i, j).x, lattice.place(i, j).y});
-    glow_.emplace(pixels_.rays(), pixels_.scene(), *pixels_.transport().surfaces, intervals_,
+    halo_.emplace(pixels_.rays(), pixels_.scene(), *pixels_.transport().surfaces, intervals_,
                   groups * bands_, options_.cells, radiance, positions);
     const std::size_t values = groups * bands_;
-    std::vector<float> glow;
+    std::vector<float> halo;
     for (std::size_t n = 0; n < raw.size(); ++n) {
-        MultipleNode& node = raw[n];
+        RadianceNode& node = raw[n];
         if (node.weights.empty()) continue;  // no ray, or outside the window
-        const std::span<const float> of_node = glow_->of_node(n);
-        glow.assign(of_node.begin(), of_node.end());
-        if (glow_->is_of_mean_water()) spread_glow(node, glow);
-        for (std::size_t i = 0; i < glow_->interval_count(); ++i) {
+        const std::span<const float> of_node = halo_->of_node(n);
+        halo.assign(of_node.begin(), of_node.end());
+        if (halo_->is_of_mean_water()) spread_halo(node, halo);
+        for (std::size_t i = 0; i < halo_->interval_count(); ++i) {
             if (intervals_.begin(i) >= node.reach) break;
-            for (NodeLight& half : node.halves) {
+            for (NodeRadiance& half : node.halves) {
                 float mean = 0;
                 for (std::size_t k = 0; k < values; ++k) {
-                    half.water[i * values + k] -= glow[i * values + k];
-                    mean += glow[i * values + k];
+                    half.water[i * values + k] -= halo[i * values + k];
+                    mean += halo[i * values + k];
                 }
                 half.water_mean[i] -= mean / static_cast<float>(bands_);
             }
@@ -299,37 +300,38 @@ void MultipleLight::take_away_glow(NodeLattice& lattice, const IndirectLight& in
     }
 }
 
-// How much of the glow of water as it is in the mean belongs to a ray, whose water scatters
+// How much of the halo of water as it is in the mean belongs to a ray, whose water scatters
 // `scattered` of even light up to `distance`.
-double MultipleLight::share_of_glow(double scattered, double distance, std::size_t band) const {
-    if (!glow_->is_of_mean_water()) return 1;
-    const double mean = glow_->scattered_by_mean_water(distance, band);
+double MultipleScattering::share_of_halo(double scattered, double distance,
+                                         std::size_t band) const {
+    if (!halo_->is_of_mean_water()) return 1;
+    const double mean = halo_->scattered_by_mean_water(distance, band);
     return mean > 0 ? std::min(1.0, scattered / mean) : 1;
 }
 
-// Reduces glow, which is that of mean water, to what pixels along the node's ray have of it: none
+// Reduces halo, which is that of mean water, to what pixels along the node's ray have of it: none
 // where that ray scatters no light, since nodes cannot hold any there.
-void MultipleLight::spread_glow(const MultipleNode& node, std::span<float> glow) const {
+void MultipleScattering::spread_halo(const RadianceNode& node, std::span<float> halo) const {
     const std::size_t values = estimator_.groups() * bands_;
     for (std::size_t k = 0; k < values; ++k) {
         const std::size_t band = k % bands_;
         double all = 0, scattered = 0;
         const auto for_each = [&](const auto& visit) {
-            for (std::size_t i = 0; i < glow_->interval_count(); ++i)
+            for (std::size_t i = 0; i < halo_->interval_count(); ++i)
                 if (intervals_.begin(i) < node.reach)
-                    visit(glow[i * values + k],
+                    visit(halo[i * values + k],
                           static_cast<double>(node.weights[i * bands_ + band]));
         };
         for_each([&](float& light, double weight) {
             all += static_cast<double>(light);
             scattered += weight;
         });
-        if (scattered > 0) all *= share_of_glow(scattered, node.reach, band) / scattered;
+        if (scattered > 0) all *= share_of_halo(scattered, node.reach, band) / scattered;
         for_each([&](float& light, double weight) { light = static_cast<float>(all * weight); });
     }
 }
 
-void MultipleLight::find_corners(double x, double y, std::vector<Corner>& corners) const {
+void MultipleScattering::find_corners(double x, double y, std::vector<Corner>& corners) const {
     corners.clear();
     const double u = x / spacing_, v = y / spacing_;
     const int i = std::clamp(static_cast<int>(u), 0, nodes_.width() - 2);
@@ -340,16 +342,16 @@ void MultipleLight::find_corners(double x, double y, std::vector<Corner>& corner
                                lerp_weight(u - i, right) * lerp_weight(v - j, below)});
 }
 
-void MultipleLight::give(std::size_t group, std::size_t band, double radiance,
-                         PixelResult& result) const {
+void MultipleScattering::give(std::size_t group, std::size_t band, double radiance,
+                              PixelResult& result) const {
     if (group < result.lamps.size()) result.lamps[group][band] += radiance;
 }
 
-void MultipleLight::add_water(const PixelView& view, std::span<double> light,
-                              Errors& errors) const {
+void MultipleScattering::add_water(const PixelView& view, std::span<double> light,
+                                   Errors& errors) const {
     thread_local std::vector<Corner> corners;
     thread_local std::vector<float> weights;
-    thread_local std::vector<double> glow;
+    thread_local std::vector<double> halo;
     Spectrum scattered{};  // of even light by the water that is known
     weight_lattice_.find(view.x, view.y, weights);
     find_corners(view.x, view.y, corners);
@@ -380,11 +382,11 @@ void MultipleLight::add_water(const PixelView& view, std::span<double> light,
                 }
             }
         }
-        glow.assign(light.size(), 0.0);
-        glow_->add(view.x, view.y, view.distances[d], view.weights[d], glow);
+        halo.assign(light.size(), 0.0);
+        halo_->add(view.x, view.y, view.distances[d], view.weights[d], halo);
         for (std::size_t k = 0; k < light.size(); ++k)
             light[k] +=
-                glow[k] * share_of_glow(up_to_distance[k % bands_], view.distances[d], k % bands_);
+                halo[k] * share_of_halo(up_to_distance[k % bands_], view.distances[d], k % bands_);
         for (std::size_t b = 0; b < bands_; ++b)
             scattered[b] += view.weights[d] * up_to_distance[b];
     }
@@ -393,13 +395,14 @@ void MultipleLight::add_water(const PixelView& view, std::span<double> light,
         for (const Corner& corner : corners) {
             errors.water[b] +=
                 corner.weight * scattered[b] * static_cast<double>(corner.node->water_error[b]);
-            errors.surfaces[b] += corner.weight * static_cast<double>(corner.node->glow_error[b]);
+            errors.surfaces[b] += corner.weight * static_cast<double>(corner.node->halo_error[b]);
         }
     }
 }
 
-// What nodes hold beside the glow is a difference, and so noisy; light is not below zero.
-void MultipleLight::add_volume(const PixelView& view, PixelResult& result, Errors& errors) const {
+// What nodes hold beside the halo is a difference, and so noisy; light is not below zero.
+void MultipleScattering::add_volume(const PixelView& view, PixelResult& result,
+                                    Errors& errors) const {
     thread_local std::vector<double> light;
     const std::size_t groups = estimator_.groups();
     light.assign(groups * bands_, 0.0);
@@ -415,16 +418,16 @@ void MultipleLight::add_volume(const PixelView& view, PixelResult& result, Error
 
 // The corners that see the surface; if none does, nodes around them, by nearness. Normals that
 // differ more will do where none agrees better: on rough ground nodes cannot have them all.
-void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit,
-                                 std::vector<Corner>& matches) const {
+void MultipleScattering::find_matches(double x, double y, const SurfaceHit& hit,
+                                      std::vector<Corner>& matches) const {
     for (const double min_cosine : {k_min_node_cosine, k_min_cosine_of_match}) {
         find_matches(x, y, hit, min_cosine, matches);
         if (!matches.empty()) return;
     }
 }
 
-void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit, double min_cosine,
-                                 std::vector<Corner>& matches) const {
+void MultipleScattering::find_matches(double x, double y, const SurfaceHit& hit, double min_cosine,
+                                      std::vector<Corner>& matches) const {
     const auto sees = [&](const SmoothNode& node) {
         if (!node.surface || node.surface->object_id != hit.object_id) return false;
         const NodeSurface& surface = *node.surface;
@@ -450,8 +453,8 @@ void MultipleLight::find_matches(double x, double y, const SurfaceHit& hit, doub
     }
 }
 
-void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
-                                PixelResult& result, Errors& errors) const {
+void MultipleScattering::add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
+                                     PixelResult& result, Errors& errors) const {
     thread_local std::vector<Corner> matches;
     thread_local SmoothNode own;
     find_matches(sample.x, sample.y, sample.hit, matches);
@@ -503,8 +506,8 @@ void MultipleLight::add_surface(const SurfaceSample& sample, std::span<const dou
     }
 }
 
-void MultipleLight::add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
-                        PixelResult& result) const {
+void MultipleScattering::add(const PixelView& view, const SurfaceLight& light,
+                             std::size_t first_sample, PixelResult& result) const {
     if (!view.ray) return;
     Errors errors;
     add_volume(view, result, errors);
@@ -605,19 +608,20 @@ bool has_light(const PixelRenderer& pixels) {
 
 }  // namespace
 
-AllLightPass::AllLightPass(double share) : Pass("multiple scattering"), share_(share) {}
-AllLightPass::~AllLightPass() = default;
+MultipleScatteringPass::MultipleScatteringPass(double share)
+    : Pass("multiple scattering"), share_(share) {}
+MultipleScatteringPass::~MultipleScatteringPass() = default;
 
-PassNeeds AllLightPass::needs(const LayerPlan& /*plan*/) const {
+PassNeeds MultipleScatteringPass::needs(const LayerPlan& /*plan*/) const {
     return {.paths = true};
 }
 
-void AllLightPass::provide(LayerSupply& supply) const {
+void MultipleScatteringPass::provide(LayerSupply& supply) const {
     supply.layers |=
         {Layer::multiple, Layer::multiple_volume, Layer::multiple_surface, Layer::error};
 }
 
-void AllLightPass::begin(Rendering& rendering) {
+void MultipleScatteringPass::begin(Rendering& rendering) {
     light_.reset();
     sums_.reset();
     if (!rendering.pixels.transport().paths || !has_light(rendering.pixels)) return;
@@ -627,19 +631,19 @@ void AllLightPass::begin(Rendering& rendering) {
     });
 }
 
-void AllLightPass::run(Rendering& rendering) {
+void MultipleScatteringPass::run(Rendering& rendering) {
     if (!rendering.pixels.transport().paths || !has_light(rendering.pixels)) return;
     MultipleLightOptions options = options_of(rendering.desc.render.quality);
     options.paths = static_cast<int>(options.paths * share_);
     options.error /= std::sqrt(share_);
     options.lamps = rendering.plan.has_lamps();
-    light_ = std::make_unique<MultipleLight>(rendering.pixels, options);
+    light_ = std::make_unique<MultipleScattering>(rendering.pixels, options);
     light_->prepare(rendering.film.window(), rendering.progress_of(stage()));
     sums_ = std::make_unique<ErrorSums>(rendering.film.window(),
                                         static_cast<std::size_t>(rendering.pixels.band_count()));
 }
 
-void AllLightPass::end(Rendering& rendering) {
+void MultipleScatteringPass::end(Rendering& rendering) {
     if (sums_) sums_->tell(rendering.reached);
 }
 

@@ -11,7 +11,7 @@
 namespace uw {
 
 /// A point on a surface of which the indirect light is known.
-struct SurfacePoint {
+struct IrradianceRecord {
     Point3 position;
     Vector3 normal{0, 0, 1};  // shading normal, unit
 };
@@ -19,17 +19,17 @@ struct SurfacePoint {
 /// The indirect light on surfaces, that which was scattered or reflected before it arrives: known
 /// at points that lie scattered over them, and interpolated in between (Ward, Rubinstein and Clear
 /// 1988, but with points that are given). Thread safe.
-class IndirectLight {
+class IrradianceCache {
   public:
     /// `radiance`: what a white surface would reflect of it, [point * values + value]
     /// [W m^-2 sr^-1].
-    IndirectLight(std::vector<SurfacePoint> points, std::vector<float> radiance,
-                  std::size_t values);
-    ~IndirectLight();
-    IndirectLight(const IndirectLight&) = delete;
-    IndirectLight& operator=(const IndirectLight&) = delete;
-    IndirectLight(IndirectLight&&) noexcept;
-    IndirectLight& operator=(IndirectLight&&) noexcept;
+    IrradianceCache(std::vector<IrradianceRecord> points, std::vector<float> radiance,
+                    std::size_t values);
+    ~IrradianceCache();
+    IrradianceCache(const IrradianceCache&) = delete;
+    IrradianceCache& operator=(const IrradianceCache&) = delete;
+    IrradianceCache(IrradianceCache&&) noexcept;
+    IrradianceCache& operator=(IrradianceCache&&) noexcept;
 
     /// How many values each point has.
     std::size_t values() const { return values_; }

@@ -1,4 +1,4 @@
-#include "core/paths/multiple_nodes.h"
+#include "core/paths/radiance_nodes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,26 +53,26 @@ double share_of(double guess, double typical) {
 
 }  // namespace
 
-double NodePaths::water_share(const MultipleNode& node) const {
-    return share_of(node.guessed_water, typical_water);
+double NodePaths::water_share(const RadianceNode& node) const {
+    return share_of(node.estimated_water, typical_water);
 }
 
-double NodePaths::surface_share(const MultipleNode& node) const {
-    return share_of(node.guessed_surface, typical_surface);
+double NodePaths::surface_share(const RadianceNode& node) const {
+    return share_of(node.estimated_surface, typical_surface);
 }
 
-struct MultipleNodes::Workspace {
+struct RadianceEstimator::Workspace {
     CameraSegment segment;
     SurfaceLight light;
     std::vector<double> seen;                                         // radiance of the surface
-    std::vector<double> water;                                        // as MultipleNode::water
+    std::vector<double> water;                                        // as RadianceNode::water
     std::vector<double> interval_mean, interval_squares, batch_mean;  // of a half, of a batch
-    std::vector<double> lit_indirect;                                 // as MultipleNode's
+    std::vector<double> lit_indirect;                                 // as RadianceNode's
     std::vector<double> surface;
 };
 
 /// Adds up terms by the interval in which they leave the camera ray.
-class MultipleNodes::WaterSum final : public PathTerms {
+class RadianceEstimator::WaterSum final : public ContributionSink {
   public:
     WaterSum(const DistanceIntervals& intervals, std::size_t groups, std::size_t bands,
              Workspace& w)
@@ -88,7 +88,7 @@ class MultipleNodes::WaterSum final : public PathTerms {
     /// The light of the path's terms, summed over the bands.
     double of_path() const { return path_; }
 
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         const std::size_t i = intervals_.at(term.distance);
         const std::size_t group = std::min(term.lamp, groups_ - 1);
         double* sum = &w_.water[(i * groups_ + group) * bands_];
@@ -113,13 +113,13 @@ class MultipleNodes::WaterSum final : public PathTerms {
     bool is_lit_ = false;
 };
 
-class MultipleNodes::SurfaceSum final : public PathTerms {
+class RadianceEstimator::SurfaceSum final : public ContributionSink {
   public:
     SurfaceSum(std::size_t groups, std::size_t bands, std::vector<double>& sum,
                bool leaves_out_mirrored)
         : groups_(groups), bands_(bands), sum_(sum), leaves_out_mirrored_(leaves_out_mirrored) {}
 
-    void add(const PathTerm& term) override {
+    void add(const PathContribution& term) override {
         if (leaves_out_mirrored_ && PathTracer::is_mirrored(term)) return;
         const std::size_t group = std::min(term.lamp, groups_ - 1);
         for (std::size_t b = 0; b < bands_; ++b) sum_[group * bands_ + b] += term.radiance[b];
@@ -135,13 +135,13 @@ class MultipleNodes::SurfaceSum final : public PathTerms {
     double batch_ = 0;
 };
 
-MultipleNodes::Workspace& MultipleNodes::workspace_of_thread() {
+RadianceEstimator::Workspace& RadianceEstimator::workspace_of_thread() {
     thread_local Workspace workspace;
     return workspace;
 }
 
-void MultipleNodes::estimate_surface(const Place& place, const NodePaths& paths,
-                                     MultipleNode& node) const {
+void RadianceEstimator::estimate_surface(const Place& place, const NodePaths& paths,
+                                         RadianceNode& node) const {
     Workspace& w = workspace_of_thread();
     node = {};
     const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
@@ -154,8 +154,8 @@ void MultipleNodes::estimate_surface(const Place& place, const NodePaths& paths,
     trace_surface(place.seed, scaled(paths.surface, node.surface_share), w, node);
 }
 
-Point3 MultipleNodes::find_lit_surfaces(const Place& place, int paths,
-                                        std::vector<SurfaceSample>& samples) const {
+Point3 RadianceEstimator::find_lit_surfaces(const Place& place, int paths,
+                                            std::vector<SurfaceSample>& samples) const {
     Workspace& w = workspace_of_thread();
     samples.clear();
     const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
@@ -172,10 +172,10 @@ Point3 MultipleNodes::find_lit_surfaces(const Place& place, int paths,
     return ray->origin;
 }
 
-void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths, NodeLight& light,
-                                     SurfaceErrors& errors) const {
+void RadianceEstimator::estimate_surface(const SurfaceSample& sample, int paths,
+                                         NodeRadiance& light, SurfaceErrors& errors) const {
     Workspace& w = workspace_of_thread();
-    MultipleNode node;
+    RadianceNode node;
     begin(sample, true, w, node);
     const auto x = static_cast<std::uint64_t>(64 * sample.x);
     const auto y = static_cast<std::uint64_t>(64 * sample.y);
@@ -194,8 +194,8 @@ void MultipleNodes::estimate_surface(const SurfaceSample& sample, int paths, Nod
     merge(light.glossy, node.halves[1].glossy, errors.glossy);
 }
 
-void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& w,
-                          MultipleNode& node) const {
+void RadianceEstimator::begin(const SurfaceSample& sample, bool has_hit, Workspace& w,
+                              RadianceNode& node) const {
     node.has_ray = true;
     node.reach = has_hit ? sample.hit.distance : k_far;
     w.seen.clear();
@@ -214,20 +214,20 @@ void MultipleNodes::begin(const SurfaceSample& sample, bool has_hit, Workspace& 
                                    reflection.is_glossy()};
     }
     transport_.paths->begin(sample.ray, has_hit ? &sample.hit : nullptr, w.seen, w.segment);
-    const CameraSegment::Light& light = w.segment.light;
-    node.mean_light = light.is_known ? light.own : 0;
-    node.guessed_water = light.own - light.of_surface;
+    const CameraSegment::Expected& expected = w.segment.expected;
+    node.mean_light = expected.is_known ? expected.pixel : 0;
+    node.estimated_water = expected.pixel - expected.of_surface;
     if (!has_hit) return;
     constexpr double k_min_reflectance = 0.1;
     double reflectance = 0;
     for (std::size_t b = 0; b < bands(); ++b)
         reflectance += sample.hit.reflectance[b] / static_cast<double>(bands());
-    node.guessed_surface = light.of_surface / std::max(reflectance, k_min_reflectance);
+    node.estimated_surface = expected.of_surface / std::max(reflectance, k_min_reflectance);
 }
 
-void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
-                                   const IndirectLight& indirect, double typical_light,
-                                   MultipleNode& node) const {
+void RadianceEstimator::estimate_water(const Place& place, const NodePaths& paths,
+                                       const IrradianceCache& indirect, double typical_light,
+                                       RadianceNode& node) const {
     Workspace& w = workspace_of_thread();
     const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
     if (!ray) return;
@@ -244,21 +244,21 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
     // No surface guides the paths that stay in the water.
     transport_.paths->begin(*ray, has_hit ? &hit : nullptr, {}, w.segment);
     w.segment.paths = {};
-    CameraSegment::Light& light = w.segment.light;
-    if (light.is_known) light.own = std::max(light.own, node.mean_light);
-    if (light.is_known && weights_.vary()) {
+    CameraSegment::Expected& expected = w.segment.expected;
+    if (expected.is_known) expected.pixel = std::max(expected.pixel, node.mean_light);
+    if (expected.is_known && weights_.vary()) {
         // Particles may be lit up anywhere, of which the lamps' guides know nothing. What is
         // typical is guessed without most of the scattered light: it is a few times as much.
         constexpr double k_ambient = 10, k_min_own = 3;
-        light.ambient = std::max(light.ambient, k_ambient * typical_light);
-        light.own = std::max(light.own, k_min_own * typical_light);
+        expected.ambient = std::max(expected.ambient, k_ambient * typical_light);
+        expected.pixel = std::max(expected.pixel, k_min_own * typical_light);
     }
     const double per_band = 1.0 / static_cast<double>(bands());
     w.batch_mean.assign(count, 0.0);
     w.lit_indirect.assign(bands(), 0.0);
     WaterSum sum(intervals_, groups_, bands(), w);
     node.water_share = paths.water_share(node);
-    const auto trace = [&](NodeStream stream, int batch, int all, MultipleNode::Moments& moments,
+    const auto trace = [&](NodeStream stream, int batch, int all, RadianceNode::Moments& moments,
                            const auto& trace_one) {
         const int in_batch = std::max(1, all / k_node_batches);
         const int in_all = in_batch * k_node_batches;
@@ -274,7 +274,7 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
         }
     };
     for (int batch = 0; batch < k_node_batches; ++batch) {
-        NodeLight& half = node.halves[static_cast<std::size_t>(batch / k_batches_of_half)];
+        NodeRadiance& half = node.halves[static_cast<std::size_t>(batch / k_batches_of_half)];
         if (batch % k_batches_of_half == 0) {
             w.water.assign(count * groups_ * bands(), 0.0);
             w.interval_mean.assign(count, 0.0);
@@ -303,13 +303,13 @@ void MultipleNodes::estimate_water(const Place& place, const NodePaths& paths,
                 static_cast<float>(variance_of_half(w.interval_mean[i], w.interval_squares[i]));
     }
     store(w.lit_indirect, 1.0 / k_node_batches, node.lit_indirect);
-    for (MultipleNode::Moments* moments : {&node.lit, &node.water})
+    for (RadianceNode::Moments* moments : {&node.lit, &node.water})
         moments->variance = std::max(0.0, moments->variance - moments->mean * moments->mean);
 }
 
-void MultipleNodes::estimate_mirrored(const SurfaceSample& sample, int paths,
-                                      std::vector<double>& radiance,
-                                      std::vector<double>& squares) const {
+void RadianceEstimator::estimate_mirrored(const SurfaceSample& sample, int paths,
+                                          std::vector<double>& radiance,
+                                          std::vector<double>& squares) const {
     thread_local std::vector<double> of_path;
     radiance.assign(groups_ * bands(), 0.0);
     squares.assign(bands(), 0.0);
@@ -333,11 +333,12 @@ void MultipleNodes::estimate_mirrored(const SurfaceSample& sample, int paths,
 }
 
 // Diffuse reflection as of a white surface, whose colour is that of each pixel; gloss as it is.
-void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
-                                  MultipleNode& node) const {
+void RadianceEstimator::trace_surface(std::uint64_t seed, int paths, Workspace& w,
+                                      RadianceNode& node) const {
     const std::size_t bands = this->bands();
     const int in_batch = std::max(1, paths / k_node_batches);
-    const auto trace = [&](NodeStream stream, double share, std::vector<float> NodeLight::*values) {
+    const auto trace = [&](NodeStream stream, double share,
+                           std::vector<float> NodeRadiance::*values) {
         std::array<double, k_node_batches> means{};
         SurfaceSum sum(groups_, bands, w.surface, stream == k_node_glossy);
         for (int batch = 0; batch < k_node_batches; ++batch) {
@@ -369,7 +370,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
     // Weights are those of what the camera sees, so that paths end as they would in a pixel.
     const double share = std::max(node.surface_seen, k_min_seen);
     std::ranges::fill(w.segment.transmittance, share);
-    const auto means = trace(k_node_diffuse, share, &NodeLight::diffuse);
+    const auto means = trace(k_node_diffuse, share, &NodeRadiance::diffuse);
     for (std::size_t half = 0; half < node.halves.size(); ++half) {
         double sum = 0, squares = 0;
         for (std::size_t i = 0; i < k_batches_of_half; ++i) {
@@ -377,7 +378,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
             sum += mean;
             squares += mean * mean;
         }
-        NodeLight& light = node.halves[half];
+        NodeRadiance& light = node.halves[half];
         light.diffuse_mean = sum / k_batches_of_half;
         light.diffuse_variance = variance_of_half(sum, squares);
         node.mean_light += node.surface_seen * sum / k_node_batches;
@@ -386,7 +387,7 @@ void MultipleNodes::trace_surface(std::uint64_t seed, int paths, Workspace& w,
     hit.reflectance = {};
     hit.has_material = true;
     std::ranges::fill(w.segment.transmittance, 1.0);
-    trace(k_node_glossy, 1, &NodeLight::glossy);
+    trace(k_node_glossy, 1, &NodeRadiance::glossy);
 }
 
 }  // namespace uw

@@ -1,4 +1,4 @@
-#include "core/light/glow.h"
+#include "core/light/emission.h"
 
 #include <fmt/format.h>
 
@@ -122,8 +122,8 @@ std::vector<GlowCell> cells_of(const ConcentrationField& field, const Emission& 
     return cells;
 }
 
-GlowPart part_of(std::span<const GlowCell> cells) {
-    GlowPart part;
+EmissivePart part_of(std::span<const GlowCell> cells) {
+    EmissivePart part;
     double weight = 0, square = 0;
     Vector3 mean(0);
     for (const GlowCell& cell : cells) {
@@ -157,7 +157,7 @@ int widest_axis(std::span<const GlowCell> cells) {
 }
 
 // Halves of the same light, again and again.
-void divide(std::span<GlowCell> cells, int count, std::vector<GlowPart>& parts) {
+void divide(std::span<GlowCell> cells, int count, std::vector<EmissivePart>& parts) {
     if (count == 1 || cells.size() == 1) {
         parts.push_back(part_of(cells));
         return;
@@ -179,16 +179,16 @@ void divide(std::span<GlowCell> cells, int count, std::vector<GlowPart>& parts) 
 
 }  // namespace
 
-std::vector<GlowPart> divide_glow(const ConcentrationField& field, const Emission& emission,
-                                  int count) {
+std::vector<EmissivePart> divide_emission(const ConcentrationField& field, const Emission& emission,
+                                          int count) {
     std::vector<GlowCell> cells = cells_of(field, emission);
-    std::vector<GlowPart> parts;
+    std::vector<EmissivePart> parts;
     if (!cells.empty()) divide(cells, count, parts);
     return parts;
 }
 
-std::vector<GlowPart> merged(std::span<const GlowPart> parts, int count) {
-    std::vector<GlowPart> result;
+std::vector<EmissivePart> merged(std::span<const EmissivePart> parts, int count) {
+    std::vector<EmissivePart> result;
     std::vector<GlowCell> cells;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         GlowCell cell{parts[i].centre, 0, k_mean_square * parts[i].radius * parts[i].radius,
