@@ -6,18 +6,20 @@
 
 namespace uw {
 
-/// Gathers the derivatives of a number by something that light meets on its way, from those by the
-/// light of its paths. For one thread.
+/// Accumulates the derivatives of a scalar by parameters of what light meets on its way
+/// (back-propagation), given its derivatives by the contributions of light paths. Not thread safe:
+/// one object per thread.
 class ContributionGradient {
   public:
     virtual ~ContributionGradient() = default;
-    /// ContributionSink::turn. One from the camera begins anew, after finish(); numbers count from
-    /// 0.
+    /// As ContributionSink::add_vertex. A vertex without a predecessor, at the camera, begins a new
+    /// tree of paths, after finish(); numbers count from 0.
     virtual int add_vertex(int before, const PathVertex& vertex) = 0;
-    /// The number changes by worth[band] in proportion to the term's light: its derivative by that,
-    /// times it.
-    virtual void add(const PathContribution& term, std::span<const double> worth) = 0;
-    /// Hands back what all terms since the last camera turn are worth.
+    /// `sensitivity`, by band: the derivative of the scalar by the contribution's radiance times
+    /// that radiance, i.e. by its logarithm.
+    virtual void add(const PathContribution& contribution, std::span<const double> sensitivity) = 0;
+    /// Propagates the sensitivities of all contributions since the last camera vertex to the
+    /// parameters.
     virtual void finish() = 0;
 };
 

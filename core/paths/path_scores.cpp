@@ -12,7 +12,7 @@ namespace uw {
 
 namespace {
 
-// What a change does not move is found again where it was, to rounding in single precision.
+// Surfaces that a change does not move are hit again at the same distance, up to single precision.
 constexpr double k_same_place = 1e-4;
 
 bool has_same_origin(const Lamp& a, const Lamp& b) {
@@ -67,13 +67,14 @@ void ChangedScenes::compare(Side& side) const {
         side.has_same_emitter.push_back((*side.scene.emitters)[j] == (*scene.emitters)[j] ? 1 : 0);
 }
 
-bool ChangedScenes::keeps_way(std::size_t change) const {
+bool ChangedScenes::keeps_transmittance(std::size_t change) const {
     const auto keeps = [](const Side& side) { return side.has_same_medium && side.has_same_field; };
     return keeps(less(change)) && keeps(more(change));
 }
 
-bool ChangedScenes::keeps_response(std::size_t change) const {
-    return keeps_way(change) && less(change).has_same_surfaces && more(change).has_same_surfaces;
+bool ChangedScenes::keeps_scattering(std::size_t change) const {
+    return keeps_transmittance(change) && less(change).has_same_surfaces &&
+           more(change).has_same_surfaces;
 }
 
 bool ChangedScenes::keeps_emitter(std::size_t change, std::size_t emitter) const {
@@ -81,68 +82,69 @@ bool ChangedScenes::keeps_emitter(std::size_t change, std::size_t emitter) const
            more(change).has_same_emitter[emitter] != 0;
 }
 
-PathScores::Corner& PathScores::add_corner() {
-    if (count_ == corners_.size()) corners_.emplace_back();
-    return corners_[count_++];
+PathScores::Vertex& PathScores::new_vertex() {
+    if (count_ == vertices_.size()) vertices_.emplace_back();
+    return vertices_[count_++];
 }
 
 int PathScores::add_vertex(int before, const PathVertex& vertex) {
     which_ = {};
     const auto number = static_cast<int>(count_);
-    add_corner();
-    Corner& corner = corners_[static_cast<std::size_t>(number)];
-    corner.scores.assign(scenes_.changes() * scenes_.bands(), 0.0);
-    const Corner* const from =
-        before == k_no_vertex ? nullptr : &corners_[static_cast<std::size_t>(before)];
-    place(corner, vertex.kind, vertex.position, vertex.hit, from);
+    new_vertex();
+    Vertex& added = vertices_[static_cast<std::size_t>(number)];
+    added.scores.assign(scenes_.changes() * scenes_.bands(), 0.0);
+    const Vertex* const from =
+        before == k_no_vertex ? nullptr : &vertices_[static_cast<std::size_t>(before)];
+    place(added, vertex.kind, vertex.position, vertex.hit, from);
     if (from == nullptr) return number;
-    std::ranges::copy(from->scores, corner.scores.begin());
-    add_response(*from, corner.in, corner.scores);
-    add_way(from->position, corner.position, corner.scores);
+    std::ranges::copy(from->scores, added.scores.begin());
+    add_scattering(*from, added.in, added.scores);
+    add_transmittance(from->position, added.position, added.scores);
     return number;
 }
 
-void PathScores::find(const PathContribution& term, const EveryFew& which,
+void PathScores::find(const PathContribution& contribution, const EveryFew& which,
                       std::span<double> scores) {
     which_ = which;
-    const Corner& from = corners_[static_cast<std::size_t>(term.vertex)];
-    const bool is_event = term.hit != nullptr || term.emitter != k_no_emitter;
+    const Vertex& from = vertices_[static_cast<std::size_t>(contribution.vertex)];
+    const bool is_event = contribution.hit != nullptr || contribution.emitter != k_no_emitter;
     PathVertex::Kind kind = PathVertex::Kind::camera;
     if (is_event)
-        kind = term.hit != nullptr ? PathVertex::Kind::reflected : PathVertex::Kind::scattered;
-    place(last_, kind, term.place, term.hit, &from, term.concentration);
+        kind =
+            contribution.hit != nullptr ? PathVertex::Kind::reflected : PathVertex::Kind::scattered;
+    place(last_, kind, contribution.place, contribution.hit, &from, contribution.concentration);
     std::ranges::copy(from.scores, scores.begin());
-    add_response(from, last_.in, scores);
-    if (term.columns.empty()) add_way(from.position, last_.position, scores);
-    if (term.emitter != k_no_emitter)
-        add_lamp(term, scores);
-    else if (term.hit != nullptr)
+    add_scattering(from, last_.in, scores);
+    if (contribution.columns.empty()) add_transmittance(from.position, last_.position, scores);
+    if (contribution.emitter != k_no_emitter)
+        add_lamp(contribution, scores);
+    else if (contribution.hit != nullptr)
         add_emission(last_, scores);
     else
-        add_seen_lamp(term.lamp, scores);
+        add_visible_lamp(contribution.lamp, scores);
 }
 
-void PathScores::place(Corner& corner, PathVertex::Kind kind, const Point3& position,
-                       const SurfaceHit* hit, const Corner* before,
+void PathScores::place(Vertex& vertex, PathVertex::Kind kind, const Point3& position,
+                       const SurfaceHit* hit, const Vertex* before,
                        std::span<const double> concentration) const {
-    corner.kind = kind;
-    corner.position = position;
+    vertex.kind = kind;
+    vertex.position = position;
     if (before != nullptr) {
-        const Vector3 way = position - before->position;
-        const double length = glm::length(way);
-        corner.in = length > 0 ? way / length : before->in;
+        const Vector3 offset = position - before->position;
+        const double length = glm::length(offset);
+        vertex.in = length > 0 ? offset / length : before->in;
     }
-    corner.hits.clear();
-    corner.concentration.clear();
+    vertex.hits.clear();
+    vertex.concentration.clear();
     const std::vector<Side>& sides = scenes_.sides_;
     if (kind == PathVertex::Kind::reflected) {
-        corner.hits.push_back(*hit);
+        vertex.hits.push_back(*hit);
         for (std::size_t i = 1; i < sides.size(); ++i) {
             if (sides[i].has_same_surfaces) continue;
-            SurfaceHit& found = corner.hits.emplace_back(*hit);
+            SurfaceHit& found = vertex.hits.emplace_back(*hit);
             SurfaceHit other;
             const double length = distance(before->position, position);
-            if (sides[i].scene.surfaces->closest_hit({before->position, corner.in},
+            if (sides[i].scene.surfaces->closest_hit({before->position, vertex.in},
                                                      (1 + k_same_place) * length, other) &&
                 other.distance > (1 - k_same_place) * length) {
                 if (sides[i].textures != nullptr)
@@ -155,22 +157,22 @@ void PathScores::place(Corner& corner, PathVertex::Kind kind, const Point3& posi
         const std::size_t count = scenes_.constituents_;
         for (std::size_t i = 0; i < sides.size(); ++i) {
             if (i > 0 && sides[i].has_same_field) continue;
-            corner.concentration.resize(corner.concentration.size() + count);
-            sides[i].scene.field->sample(position, std::span(corner.concentration).last(count));
+            vertex.concentration.resize(vertex.concentration.size() + count);
+            sides[i].scene.field->sample(position, std::span(vertex.concentration).last(count));
         }
-        // Fields that differ do so by the difference of their values.
+        // Fields of the sides differ by the difference of their values at the point.
         if (!concentration.empty())
             for (std::size_t k = 0; k < count; ++k) {
-                const double more = concentration[k] - corner.concentration[k];
-                for (std::size_t i = k; i < corner.concentration.size(); i += count)
-                    corner.concentration[i] += more;
+                const double more = concentration[k] - vertex.concentration[k];
+                for (std::size_t i = k; i < vertex.concentration.size(); i += count)
+                    vertex.concentration[i] += more;
             }
     }
 }
 
 namespace {
 
-// The place of a side's own values, where those that share the first side's have none.
+// The index of a side's own value; sides that share the base's value have none.
 template <class Sides, class Side, class Shares>
 std::size_t place_among(const Sides& sides, const Side& side, const Shares& shares) {
     if (shares(side)) return 0;
@@ -182,15 +184,15 @@ std::size_t place_among(const Sides& sides, const Side& side, const Shares& shar
 
 }  // namespace
 
-std::span<const double> PathScores::concentrations(const Side& side, const Corner& corner) const {
+std::span<const double> PathScores::concentrations(const Side& side, const Vertex& vertex) const {
     const std::size_t count = scenes_.constituents_;
     const std::size_t place =
         place_among(scenes_.sides_, side, [](const Side& each) { return each.has_same_field; });
-    return std::span(corner.concentration).subspan(place * count, count);
+    return std::span(vertex.concentration).subspan(place * count, count);
 }
 
-const SurfaceHit& PathScores::hit(const Side& side, const Corner& corner) const {
-    return corner.hits[place_among(scenes_.sides_, side,
+const SurfaceHit& PathScores::hit(const Side& side, const Vertex& vertex) const {
+    return vertex.hits[place_among(scenes_.sides_, side,
                                    [](const Side& each) { return each.has_same_surfaces; })];
 }
 
@@ -200,12 +202,12 @@ void PathScores::find_column(const Side& side, const Point3& from, const Point3&
     if (!column.empty()) side.scene.field->column(from, to, column);
 }
 
-void PathScores::add_way(const Point3& from, const Point3& to, std::span<double> scores) {
+void PathScores::add_transmittance(const Point3& from, const Point3& to, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     const double length = distance(from, to);
     bool has_column = false;
     for (std::size_t i = which_.first; i < scenes_.changes(); i += which_.step) {
-        if (scenes_.keeps_way(i)) continue;
+        if (scenes_.keeps_transmittance(i)) continue;
         if (!std::exchange(has_column, true)) find_column(scenes_.base(), from, to, base_column_);
         const auto depths = [&](const Side& side, double sign) {
             if (!side.has_same_field) find_column(side, from, to, column_);
@@ -236,20 +238,21 @@ void PathScores::add_relative(const Keeps& keeps, const Find& find, std::span<do
     }
 }
 
-void PathScores::add_response(const Corner& corner, const Vector3& out, std::span<double> scores) {
-    if (corner.kind != PathVertex::Kind::scattered && corner.kind != PathVertex::Kind::reflected)
+void PathScores::add_scattering(const Vertex& vertex, const Vector3& out,
+                                std::span<double> scores) {
+    if (vertex.kind != PathVertex::Kind::scattered && vertex.kind != PathVertex::Kind::reflected)
         return;
-    add_relative([&](std::size_t change) { return scenes_.keeps_response(change); },
-                 [&](const Side& side, Spectrum& values) { eval(side, corner, out, values); },
+    add_relative([&](std::size_t change) { return scenes_.keeps_scattering(change); },
+                 [&](const Side& side, Spectrum& values) { eval(side, vertex, out, values); },
                  scores);
 }
 
-void PathScores::eval(const Side& side, const Corner& corner, const Vector3& out,
+void PathScores::eval(const Side& side, const Vertex& vertex, const Vector3& out,
                       Spectrum& values) {
     const std::size_t bands = scenes_.bands();
-    if (corner.kind == PathVertex::Kind::reflected) {
-        const SurfaceHit& on = hit(side, corner);
-        const SurfaceSample sample{{corner.position - on.distance * corner.in, corner.in}, on};
+    if (vertex.kind == PathVertex::Kind::reflected) {
+        const SurfaceHit& on = hit(side, vertex);
+        const SurfaceSample sample{{vertex.position - on.distance * vertex.in, vertex.in}, on};
         SurfaceReflection(*side.scene.surfaces, sample, static_cast<int>(bands))
             .brdf_towards(out, values);
         const double cosine = std::max(0.0, glm::dot(on.normal, out));
@@ -258,9 +261,9 @@ void PathScores::eval(const Side& side, const Corner& corner, const Vector3& out
     }
     const Medium& medium = *side.scene.medium;
     p_.resize(medium.phase_functions.size());
-    const double h = half_tangent_between(corner.in, out);
+    const double h = half_tangent_between(vertex.in, out);
     side.phases.evaluate(std::span(&h, 1), p_);
-    const std::span<const double> concentration = concentrations(side, corner);
+    const std::span<const double> concentration = concentrations(side, vertex);
     for (std::size_t b = 0; b < bands; ++b) {
         double beta = 0;
         for (std::size_t m = 0; m < p_.size(); ++m) {
@@ -273,71 +276,73 @@ void PathScores::eval(const Side& side, const Corner& corner, const Vector3& out
     }
 }
 
-double PathScores::shine(const Side& side, const Corner& corner, std::size_t emitter,
-                         Spectrum& values) {
+double PathScores::eval_lamp(const Side& side, const Vertex& vertex, std::size_t emitter,
+                             Spectrum& values) {
     const Lamp& lamp = (*side.scene.emitters)[emitter];
-    const Vector3 to_lamp = lamp.origin(corner.position) - corner.position;
+    const Vector3 to_lamp = lamp.origin(vertex.position) - vertex.position;
     const double length = glm::length(to_lamp);
-    const double aside =
-        corner.kind == PathVertex::Kind::scattered ? lamp.aside({corner.position, corner.in}) : 0;
-    const double radius = std::sqrt(length * length + aside);
+    const double squared_offset =
+        vertex.kind == PathVertex::Kind::scattered ? lamp.aside({vertex.position, vertex.in}) : 0;
+    const double radius = std::sqrt(length * length + squared_offset);
     const double light =
-        lamp.relative_intensity(-to_lamp) * lamp.focus(corner.position) / lamp.spread(radius);
-    eval(side, corner, to_lamp / length, values);
+        lamp.relative_intensity(-to_lamp) * lamp.focus(vertex.position) / lamp.spread(radius);
+    eval(side, vertex, to_lamp / length, values);
     for (std::size_t b = 0; b < scenes_.bands(); ++b) values[b] *= light * lamp.axis_intensity()[b];
     return radius;
 }
 
-void PathScores::add_lamp(const PathContribution& term, std::span<double> scores) {
+void PathScores::add_lamp(const PathContribution& contribution, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     Spectrum value, less, more;
     bool has_value = false;
     for (std::size_t i = which_.first; i < scenes_.changes(); i += which_.step) {
-        if (scenes_.keeps_response(i) && scenes_.keeps_emitter(i, term.emitter)) continue;
-        if (!std::exchange(has_value, true)) shine(scenes_.base(), last_, term.emitter, value);
-        const double radius_less = shine(scenes_.less(i), last_, term.emitter, less);
-        const double radius_more = shine(scenes_.more(i), last_, term.emitter, more);
+        if (scenes_.keeps_scattering(i) && scenes_.keeps_emitter(i, contribution.emitter)) continue;
+        if (!std::exchange(has_value, true))
+            eval_lamp(scenes_.base(), last_, contribution.emitter, value);
+        const double radius_less = eval_lamp(scenes_.less(i), last_, contribution.emitter, less);
+        const double radius_more = eval_lamp(scenes_.more(i), last_, contribution.emitter, more);
         for (std::size_t b = 0; b < bands; ++b)
             if (value[b] > 0)
                 scores[i * bands + b] += (more[b] - less[b]) / (scenes_.steps_[i] * value[b]);
-        add_depth(term, i, radius_less, radius_more, scores);
+        add_depth(contribution, i, radius_less, radius_more, scores);
     }
 }
 
-void PathScores::add_depth(const PathContribution& term, std::size_t change, double radius_less,
-                           double radius_more, std::span<double> scores) {
+void PathScores::add_depth(const PathContribution& contribution, std::size_t change,
+                           double radius_less, double radius_more, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
     const Side& less = scenes_.less(change);
     const Side& more = scenes_.more(change);
-    const Lamp& lamp_less = (*less.scene.emitters)[term.emitter];
-    const Lamp& lamp_more = (*more.scene.emitters)[term.emitter];
+    const Lamp& lamp_less = (*less.scene.emitters)[contribution.emitter];
+    const Lamp& lamp_more = (*more.scene.emitters)[contribution.emitter];
     const bool is_field_same = less.has_same_field && more.has_same_field;
     const bool is_same = is_field_same && has_same_origin(lamp_less, lamp_more);
-    double way = 0;  // with the columns of the lamp's light
-    if (!term.columns.empty()) {
-        const Point3& from = corners_[static_cast<std::size_t>(term.vertex)].position;
-        way = distance(from, term.place);
+    double path_length = 0;  // of the segment before, if the contribution's columns include it
+    if (!contribution.columns.empty()) {
+        const Point3& from = vertices_[static_cast<std::size_t>(contribution.vertex)].position;
+        path_length = distance(from, contribution.place);
     }
-    if (is_same && !term.columns.empty()) {
-        less_.assign(term.columns.begin(), term.columns.end());
+    if (is_same && !contribution.columns.empty()) {
+        less_.assign(contribution.columns.begin(), contribution.columns.end());
         more_ = less_;
     } else {
-        find_column(less, lamp_less.origin(term.place), term.place, less_);
+        find_column(less, lamp_less.origin(contribution.place), contribution.place, less_);
         if (is_same)
             more_ = less_;
         else
-            find_column(more, lamp_more.origin(term.place), term.place, more_);
-        if (!term.columns.empty()) {
+            find_column(more, lamp_more.origin(contribution.place), contribution.place, more_);
+        if (!contribution.columns.empty()) {
             if (!is_field_same) {
-                const Point3& from = corners_[static_cast<std::size_t>(term.vertex)].position;
-                find_column(less, from, term.place, column_);
+                const Point3& from =
+                    vertices_[static_cast<std::size_t>(contribution.vertex)].position;
+                find_column(less, from, contribution.place, column_);
                 add(less_, column_);
-                find_column(more, from, term.place, column_);
+                find_column(more, from, contribution.place, column_);
                 add(more_, column_);
             }
-            // Around the columns that the term was computed with.
+            // Centres the columns on those that the contribution was computed with.
             for (std::size_t k = 0; k < less_.size(); ++k) {
-                const double missing = term.columns[k] - 0.5 * (less_[k] + more_[k]);
+                const double missing = contribution.columns[k] - 0.5 * (less_[k] + more_[k]);
                 less_[k] += missing;
                 more_[k] += missing;
             }
@@ -345,25 +350,25 @@ void PathScores::add_depth(const PathContribution& term, std::size_t change, dou
     }
     for (std::size_t b = 0; b < bands; ++b)
         scores[change * bands + b] -=
-            (more.attenuation.optical_depth(b, way + radius_more, more_) -
-             less.attenuation.optical_depth(b, way + radius_less, less_)) /
+            (more.attenuation.optical_depth(b, path_length + radius_more, more_) -
+             less.attenuation.optical_depth(b, path_length + radius_less, less_)) /
             scenes_.steps_[change];
 }
 
-Spectrum PathScores::emission(const Side& side, const Corner& corner) const {
-    const SurfaceHit& on = hit(side, corner);
+Spectrum PathScores::emission(const Side& side, const Vertex& vertex) const {
+    const SurfaceHit& on = hit(side, vertex);
     if (!on.has_material) return {};
     return side.scene.surfaces->material(on).emission;
 }
 
-void PathScores::add_emission(const Corner& corner, std::span<double> scores) {
-    add_relative([&](std::size_t change) { return scenes_.keeps_response(change); },
-                 [&](const Side& side, Spectrum& values) { values = emission(side, corner); },
+void PathScores::add_emission(const Vertex& vertex, std::span<double> scores) {
+    add_relative([&](std::size_t change) { return scenes_.keeps_scattering(change); },
+                 [&](const Side& side, Spectrum& values) { values = emission(side, vertex); },
                  scores);
 }
 
-// What a lamp looks like changes with its power alone.
-void PathScores::add_seen_lamp(std::size_t lamp, std::span<double> scores) {
+// The appearance of a lamp depends on its power alone.
+void PathScores::add_visible_lamp(std::size_t lamp, std::span<double> scores) {
     const std::size_t emitter = scenes_.first_emitters_[lamp];
     add_relative([&](std::size_t change) { return scenes_.keeps_emitter(change, emitter); },
                  [&](const Side& side, Spectrum& values) {

@@ -6,37 +6,38 @@ namespace uw {
 
 int TexelGradient::add_vertex(int before, const PathVertex& vertex) {
     if (before == k_no_vertex) finish();
-    if (count_ == corners_.size()) corners_.emplace_back();
-    Corner& corner = corners_[count_];
-    corner.before = before;
-    corner.is_reflection = vertex.kind == PathVertex::Kind::reflected;
-    if (corner.is_reflection) corner.hit = *vertex.hit;
-    corner.worth.assign(bands_, 0.0);
+    if (count_ == vertices_.size()) vertices_.emplace_back();
+    Vertex& added = vertices_[count_];
+    added.before = before;
+    added.is_reflection = vertex.kind == PathVertex::Kind::reflected;
+    if (added.is_reflection) added.hit = *vertex.hit;
+    added.sensitivity.assign(bands_, 0.0);
     return static_cast<int>(count_++);
 }
 
-void TexelGradient::add(const PathContribution& term, std::span<const double> worth) {
-    Corner& from = corners_[static_cast<std::size_t>(term.vertex)];
-    for (std::size_t b = 0; b < bands_; ++b) from.worth[b] += worth[b];
-    if (term.hit != nullptr && term.emitter != k_no_emitter) add_reflection(*term.hit, worth);
+void TexelGradient::add(const PathContribution& contribution, std::span<const double> sensitivity) {
+    Vertex& from = vertices_[static_cast<std::size_t>(contribution.vertex)];
+    for (std::size_t b = 0; b < bands_; ++b) from.sensitivity[b] += sensitivity[b];
+    if (contribution.hit != nullptr && contribution.emitter != k_no_emitter)
+        add_reflection(*contribution.hit, sensitivity);
 }
 
 void TexelGradient::finish() {
-    // What is worth of a turn is so of all before it.
+    // A vertex passes its sensitivity on to all vertices before it.
     for (std::size_t i = count_; i-- > 0;) {
-        const Corner& corner = corners_[i];
-        if (corner.is_reflection) add_reflection(corner.hit, corner.worth);
-        if (corner.before == k_no_vertex) continue;
-        Corner& from = corners_[static_cast<std::size_t>(corner.before)];
-        for (std::size_t b = 0; b < bands_; ++b) from.worth[b] += corner.worth[b];
+        const Vertex& vertex = vertices_[i];
+        if (vertex.is_reflection) add_reflection(vertex.hit, vertex.sensitivity);
+        if (vertex.before == k_no_vertex) continue;
+        Vertex& from = vertices_[static_cast<std::size_t>(vertex.before)];
+        for (std::size_t b = 0; b < bands_; ++b) from.sensitivity[b] += vertex.sensitivity[b];
     }
     count_ = 0;
 }
 
-void TexelGradient::add_reflection(const SurfaceHit& hit, std::span<const double> worth) {
+void TexelGradient::add_reflection(const SurfaceHit& hit, std::span<const double> sensitivity) {
     Spectrum by_reflectance{};
     for (std::size_t b = 0; b < bands_; ++b)
-        if (hit.reflectance[b] > 0) by_reflectance[b] = worth[b] / hit.reflectance[b];
+        if (hit.reflectance[b] > 0) by_reflectance[b] = sensitivity[b] / hit.reflectance[b];
     surfaces_.add_to_texture(hit, by_reflectance, gradient_);
 }
 

@@ -10,35 +10,36 @@
 
 namespace uw {
 
-/// The derivatives of a number by the texels of a texture that diffuse surfaces reflect by, from
-/// those by the light of paths. Texels that reflect nothing have none: no path goes by them.
+/// The derivatives of a scalar by the texels of a texture of diffuse reflectance, given its
+/// derivatives by the contributions of light paths. Black texels have none, as no path goes through
+/// them.
 class TexelGradient final : public ContributionGradient {
   public:
-    /// `surfaces` must outlive it, as must the texture.
+    /// `surfaces` and the texture must outlive this object.
     TexelGradient(const TexturedSurfaces& surfaces, const Texture& texture, std::size_t bands)
         : surfaces_(surfaces), gradient_(texture), bands_(bands) {}
 
     int add_vertex(int before, const PathVertex& vertex) override;
-    void add(const PathContribution& term, std::span<const double> worth) override;
+    void add(const PathContribution& contribution, std::span<const double> sensitivity) override;
     void finish() override;
 
-    /// TextureGradient::by_texel.
+    /// As TextureGradient::by_texel.
     std::vector<double> by_texel() const { return gradient_.by_texel(); }
 
   private:
-    struct Corner {
+    struct Vertex {
         int before = k_no_vertex;
         bool is_reflection = false;
         SurfaceHit hit;
-        std::vector<double> worth;  // by band, of all terms by way of here
+        std::vector<double> sensitivity;  // by band, of all contributions through this vertex
     };
-    // Light of this worth is reflected at `hit`.
-    void add_reflection(const SurfaceHit& hit, std::span<const double> worth);
+    // Adds the derivative by the reflectance at `hit`.
+    void add_reflection(const SurfaceHit& hit, std::span<const double> sensitivity);
 
     const TexturedSurfaces& surfaces_;
     TextureGradient gradient_;
     std::size_t bands_;
-    std::vector<Corner> corners_;  // reused
+    std::vector<Vertex> vertices_;  // reused
     std::size_t count_ = 0;
 };
 
