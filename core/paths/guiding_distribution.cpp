@@ -10,13 +10,13 @@ namespace uw {
 
 namespace {
 
-// A lamp that shines elsewhere still fills the water around it with scattered light. Guides that
-// fall to nothing where there is some make paths whose light is far too bright.
+// Water outside a lamp's beam is still filled with scattered light. If the guide fell to nothing
+// there, the few paths that went there would carry far too much light.
 constexpr double k_guide_min_relative = 0.3, k_guide_min_cosine = 0.1;
 constexpr double k_guide_min_reflectance = 0.1;
-constexpr double k_guide_min_radius = 0.002;  // m: keeps the field finite at a lamp
+constexpr double k_guide_min_radius = 0.002;  // m: keeps the radiance finite at a lamp
 constexpr double k_guide_min_depth = 1e-6;
-// A few of the bands, evenly spread, stand for all.
+// A few bands, evenly spaced, represent all of them.
 constexpr std::size_t k_max_bands = 4;
 
 std::size_t band_stride(std::size_t bands) {
@@ -30,7 +30,7 @@ double sum_of_guiding_bands(const Spectrum& weights, std::size_t bands) {
     return sum;
 }
 
-/// A way through the water, in one band.
+/// The optical depth and the mean albedo of a path through the water in one band.
 struct Depth {
     double tau = 0, albedo = 0;
 
@@ -90,11 +90,11 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
         double sum = 0, tau = 0, albedo = 0, scattered_once = 0;
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             const Depth depth(tables, b, length, column_);
-            const double share = weights[b] / all * lamps[j].axis_intensity()[b] *
-                                 field.flux(field.at(depth.tau, depth.albedo));
-            sum += share;
-            tau += share * depth.tau;
-            albedo += share * depth.albedo;
+            const double weight = weights[b] / all * lamps[j].axis_intensity()[b] *
+                                  field.flux(field.at(depth.tau, depth.albedo));
+            sum += weight;
+            tau += weight * depth.tau;
+            albedo += weight * depth.albedo;
             if (lamps[j].sunlight())
                 scattered_once += weights[b] / all * lamps[j].axis_intensity()[b] *
                                   std::exp(-depth.tau) * depth.tau * depth.albedo;

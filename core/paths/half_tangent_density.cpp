@@ -9,13 +9,13 @@ namespace uw {
 
 namespace {
 
-constexpr double k_least = 0x1p-24, k_most = 0x1p24;
+constexpr double k_min_h = 0x1p-24, k_max_h = 0x1p24;
 constexpr int k_cell_bits = 4;  // of the mantissa: 16 cells per octave
 constexpr int k_offset_bits = 52 - k_cell_bits;
-constexpr std::uint64_t k_first = std::bit_cast<std::uint64_t>(k_least) >> k_offset_bits;
-// Those between powers of two, after the one from 0 to k_least.
+constexpr std::uint64_t k_first = std::bit_cast<std::uint64_t>(k_min_h) >> k_offset_bits;
+// The cells of the octaves, after the one from 0 to k_min_h.
 constexpr std::size_t k_cells =
-    1 + (std::bit_cast<std::uint64_t>(k_most) >> k_offset_bits) - k_first;
+    1 + (std::bit_cast<std::uint64_t>(k_max_h) >> k_offset_bits) - k_first;
 constexpr std::size_t k_guides = 1024;
 
 std::vector<double> make_nodes() {
@@ -25,9 +25,9 @@ std::vector<double> make_nodes() {
     return nodes;
 }
 
-// The cell that holds `h`; its nodes are `cell` and `cell` + 1. Precondition: h < k_most.
+// The cell that contains `h`; its nodes are `cell` and `cell` + 1. Precondition: h < k_max_h.
 std::size_t cell_of(double h) {
-    if (h < k_least) return 0;
+    if (h < k_min_h) return 0;
     return static_cast<std::size_t>((std::bit_cast<std::uint64_t>(h) >> k_offset_bits) - k_first) +
            1;
 }
@@ -59,14 +59,14 @@ HalfTangentDensity::HalfTangentDensity(std::span<const double> at_nodes) {
 }
 
 double HalfTangentDensity::mass_to(double h) const {
-    if (!(h < k_most)) return mass_;
+    if (!(h < k_max_h)) return mass_;
     const Cell& cell = cells_[cell_of(h)];
     const double t = h - cell.begin;
     return cell.before + t * (cell.value + 0.5 * t * cell.slope);
 }
 
 double HalfTangentDensity::density(double h) const {
-    if (!(h < k_most)) return 0;
+    if (!(h < k_max_h)) return 0;
     const Cell& cell = cells_[cell_of(h)];
     return cell.value + (h - cell.begin) * cell.slope;
 }
@@ -77,7 +77,7 @@ double HalfTangentDensity::invert(double mass) const {
     while (i + 1 < k_cells && cells_[i + 1].before <= mass) ++i;
     const Cell& cell = cells_[i];
     const double rest = std::max(0.0, mass - cell.before);
-    // rest = value t + slope t^2 / 2, in a form without cancellation.
+    // Solves rest = value t + slope t^2 / 2 for t, in a form without cancellation.
     const double root = std::sqrt(std::max(0.0, cell.value * cell.value + 2 * cell.slope * rest));
     const double sum = cell.value + root;
     return cell.begin +

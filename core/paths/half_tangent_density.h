@@ -11,7 +11,7 @@
 
 namespace uw {
 
-/// One of several alternatives, drawn at random.
+/// One of several alternatives that was drawn at random, and the probability of drawing it.
 struct Choice {
     std::size_t index = 0;
     double probability = 1;
@@ -29,10 +29,10 @@ inline Choice choose(std::span<const double> cumulative, double& u) {
     return {index, weight / cumulative.back()};
 }
 
-/// A density over scattering angles psi that can be sampled, in h = tan(psi / 2): linear in h
-/// between nodes, 16 to an octave, from h = 2^-24 (psi = 1.2e-7) to 2^24, and down to h = 0. What
-/// is drawn from it has exactly the density that `density` returns, so that estimates are unbiased
-/// whatever it was made to follow. Not normalised: `mass` is its integral.
+/// A density over scattering angles psi that can be sampled by inversion, in h = tan(psi / 2):
+/// linear in h between nodes, 16 to an octave from h = 2^-24 (psi = 1.2e-7) to 2^24, and from 0 to
+/// the first. Samples have exactly the density that `density` returns, so that estimates are
+/// unbiased however roughly it follows its model. Not normalised: `mass` is its integral.
 class HalfTangentDensity {
   public:
     /// The nodes, ascending from 0.
@@ -52,27 +52,27 @@ class HalfTangentDensity {
     double invert(double mass) const;
 
   private:
-    /// Between two nodes: all that a look-up needs, in half a cache line.
+    /// A piece between two nodes. It contains all that a look-up needs, in half a cache line.
     struct Cell {
-        double begin = 0, before = 0;  // its first node, and the integral up to there
+        double begin = 0, before = 0;  // first node, and the integral up to there
         double value = 0, slope = 0;   // the density at `begin`, and its derivative
     };
 
-    std::vector<Cell> cells_;            // and one of width 0 that ends them
-    std::vector<std::uint16_t> guides_;  // the cell of each of as many equal parts of the mass
+    std::vector<Cell> cells_;            // followed by one of width 0
+    std::vector<std::uint16_t> guides_;  // guide table: the cell at equal steps of mass
     double mass_ = 0;
     double guides_per_mass_ = 0;
 };
 
-/// The direction (unit) at the angle of h = tan(angle / 2) from `axis`; `azimuth` is a share of a
-/// turn around it.
+/// The direction (unit) at the angle of h = tan(angle / 2) from `axis`; `azimuth` is a fraction
+/// (0..1) of a full revolution around it.
 Vector3 direction_around(const Vector3& axis, double h, double azimuth);
 
 /// tan(angle / 2) between unit vectors, accurate for small angles; from 1e-16 to 1e7.
 double half_tangent_between(const Vector3& a, const Vector3& b);
 
-/// By what a density per unit of h is multiplied to be one per solid angle if all azimuths are
-/// alike: dOmega = 2 pi sin(psi) dpsi = 8 pi h / (1 + h^2)^2 dh.
+/// The factor from a density per unit of h, the same for all azimuths, to one per solid angle:
+/// dOmega = 2 pi sin(psi) dpsi = 8 pi h / (1 + h^2)^2 dh.
 inline double per_solid_angle(double h) {
     const double square = 1 + h * h;
     return square * square / (8 * std::numbers::pi * h);

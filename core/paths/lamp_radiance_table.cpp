@@ -10,13 +10,13 @@
 
 namespace uw {
 
-/// Nodes at the same number of places in each octave.
+/// Nodes with the same number of equal steps in each octave.
 class OctaveNodes {
   public:
-    constexpr OctaveNodes(double least, double most, int bits_of_octave)
+    constexpr OctaveNodes(double first, double last, int bits_of_octave)
         : bits_(52 - bits_of_octave),
-          first_(cell_of(least)),
-          count_(cell_of(most) - first_ + 1),
+          first_(cell_of(first)),
+          count_(cell_of(last) - first_ + 1),
           per_cell_(1.0 / static_cast<double>(std::uint64_t{1} << bits_)) {}
 
     constexpr std::size_t count() const { return count_; }
@@ -27,8 +27,8 @@ class OctaveNodes {
     constexpr double back() const { return (*this)[count_ - 1]; }
 
     struct At {
-        std::size_t index;  // of the node before, which has one after it
-        double t;           // 0..1 on the way to that
+        std::size_t index;  // of the node before x; the last is never returned
+        double t;           // 0..1 between that node and the next
     };
     At at(double x) const {
         if (!(x > front())) return {0, 0};
@@ -52,7 +52,7 @@ namespace {
 
 constexpr OctaveNodes k_radii(0x1p-8, 48, 3), k_angles(0x1p-10, 0x1p10, 2);
 constexpr OctaveNodes k_coarse_radii(0x1p-8, 48, 2), k_coarse_angles(0x1p-10, 0x1p10, 1);
-// Every so many radii have a lobe of their own.
+// Sampling densities are stored for one in so many radii.
 constexpr std::size_t k_lobe_stride = 2;
 
 constexpr std::size_t k_albedos = 3;
@@ -63,31 +63,33 @@ double sine_of(double h) {
     return 2 * h / (1 + h * h);
 }
 
-// tan(psi / 2) by the two sides of psi's triangle and its hypotenuse, without cancellation.
+// tan(psi / 2) from the two legs of a right triangle with the angle psi and its hypotenuse, without
+// cancellation.
 double half_tangent_of(double opposite, double adjacent, double hypotenuse) {
     return adjacent > 0 ? opposite / (hypotenuse + adjacent) : (hypotenuse - adjacent) / opposite;
 }
 
 }  // namespace
 
-/// Finds order after order. Fields are kept times radius and sine, which takes their singularities
-/// away: [radius * angles + angle].
+/// Computes the radiance order by order. It is stored times radius and sine, which removes its
+/// singularities: [radius * angles + angle].
 class LampRadianceTable::Solver {
   public:
     Solver(const HalfTangentDensity& direction, const HalfTangentDensity& line, bool is_coarse);
 
     const std::vector<double>& order() const { return order_; }
-    /// The mean of the last order but one over the phase function.
+    /// The mean over the phase function of the radiance of the order before.
     const std::vector<double>& source() const { return source_; }
     void find_next_order();
 
     std::size_t size() const { return order_.size(); }
     double radius_of(std::size_t node) const { return radii_[node / nh_]; }
-    /// Such values at the nodes of the field, k_radii and k_angles.
+    /// Interpolates such values at the nodes of the table, k_radii and k_angles.
     std::vector<double> at_nodes_of_field(const std::vector<double>& values) const;
 
   private:
-    /// What one step along a ray adds: an even source between its ends, from four nodes.
+    /// The contribution of one step along a ray: a constant source between its ends, interpolated
+    /// from four nodes.
     struct Step {
         std::size_t node;
         std::array<float, 4> weight;
@@ -99,16 +101,16 @@ class LampRadianceTable::Solver {
 
     bool is_coarse_;
     OctaveNodes radii_, angles_;
-    std::size_t nr_, nh_;                   // their numbers
-    std::vector<double> growth_of_radius_;  // by which the decay of the source is taken out
-    std::vector<double> matrix_;            // of a scattering: [from * angles + to]
-    std::vector<std::vector<Step>> steps_;  // of each node
+    std::size_t nr_, nh_;                   // numbers of radii and angles
+    std::vector<double> growth_of_radius_;  // e^(k_decay r), against the decay of the source
+    std::vector<double> matrix_;            // of scattering: [from * angles + to]
+    std::vector<std::vector<Step>> steps_;  // from each node
     std::vector<double> order_, source_;
 };
 
 namespace {
 
-constexpr double k_decay = 0.15;  // of the source, with the distance from the lamp, roughly
+constexpr double k_decay = 0.15;  // rough decay of the source with the distance from the lamp
 
 }  // namespace
 
@@ -146,19 +148,19 @@ std::vector<double> LampRadianceTable::Solver::at_nodes_of_field(
     return finer;
 }
 
-// Between the nodes of the angle a parabola goes through three: a straight line would spread the
-// light once more.
+// Interpolates between angles by a parabola through three nodes: linear interpolation would blur
+// the radiance once more.
 void LampRadianceTable::Solver::make_matrix(const HalfTangentDensity& direction) {
-    // Polar angles are the closer together the less is scattered beyond them: what comes from
-    // behind has been scattered far from the bright light around the lamp.
+    // Polar angles are sampled the more densely the less is scattered beyond them: radiance from
+    // behind was scattered far from the bright light around the lamp.
     constexpr int k_polar = 96, k_azimuths = 16;
-    constexpr double k_min_sine = 0.3 / k_azimuths;  // relative: half a step beside the lamp
+    constexpr double k_min_sine = 0.3 / k_azimuths;  // relative: half an azimuthal step
     matrix_.resize(nh_ * nh_);
     parallel_for(nh_, [&](std::size_t i) {
         std::vector<double> row(nh_, 0.0);
         const double psi = 2 * std::atan(angles_[i]);
         for (int a = 0; a < k_polar; ++a) {
-            const double beyond = 1 - (a + 0.5) / k_polar, share = 2 * beyond / k_polar;
+            const double beyond = 1 - (a + 0.5) / k_polar, probability = 2 * beyond / k_polar;
             const double theta =
                 2 * std::atan(direction.invert((1 - beyond * beyond) * direction.mass()));
             for (int b = 0; b < k_azimuths; ++b) {
@@ -177,7 +179,7 @@ void LampRadianceTable::Solver::make_matrix(const HalfTangentDensity& direction)
                 const std::size_t m =
                     std::clamp(at.index + (at.t > 0.5 ? 1 : 0), std::size_t{1}, nh_ - 2);
                 const double h0 = angles_[m - 1], h1 = angles_[m], h2 = angles_[m + 1];
-                const double weight = share / (sine * k_azimuths);
+                const double weight = probability / (sine * k_azimuths);
                 row[m - 1] += weight * (h - h1) * (h - h2) / ((h0 - h1) * (h0 - h2));
                 row[m] += weight * (h - h0) * (h - h2) / ((h1 - h0) * (h1 - h2));
                 row[m + 1] += weight * (h - h0) * (h - h1) / ((h2 - h0) * (h2 - h1));
@@ -187,10 +189,10 @@ void LampRadianceTable::Solver::make_matrix(const HalfTangentDensity& direction)
     });
 }
 
-// What is scattered once: (1 / D) int p e^-(s + R) dpsi, with D the lamp's distance from the ray.
+// Single scattering: (1 / D) int p e^-(s + R) dpsi, with D the lamp's distance from the ray.
 double LampRadianceTable::Solver::first_order(const HalfTangentDensity& line, double radius,
                                               double angle) const {
-    constexpr int k_points = 32;  // of equal mass
+    constexpr int k_points = 32;  // quadrature points of equal mass
     const double distance = radius * sine_of(angle);
     const double foot = radius * std::cos(2 * std::atan(angle));
     const double from = line.mass_to(angle), mass = line.mass() - from;
@@ -204,9 +206,9 @@ double LampRadianceTable::Solver::first_order(const HalfTangentDensity& line, do
     return mass * sum;
 }
 
-// Between the nodes of the radius the source is linear once it is freed of most of its decay.
+// Between radii the source is interpolated linearly after most of its decay is removed.
 void LampRadianceTable::Solver::march(double radius, double h, std::vector<Step>& steps) const {
-    constexpr double k_reach = 20;
+    constexpr double k_march_depth = 20;
     const double min_step = is_coarse_ ? 0.004 : 0.002, max_step = is_coarse_ ? 0.8 : 0.4;
     const double growth = is_coarse_ ? 0.6 : 0.3;
     const auto to_lamp_at = [](double across, double along) {
@@ -214,7 +216,7 @@ void LampRadianceTable::Solver::march(double radius, double h, std::vector<Step>
     };
     const double distance = radius * sine_of(h), foot = radius * std::cos(2 * std::atan(h));
     double s = 0, transmittance = 1;
-    while (s < k_reach) {
+    while (s < k_march_depth) {
         double step = std::clamp(growth * to_lamp_at(distance, s - foot), min_step, max_step);
         if (s < foot && s + step > foot) step = std::max(foot - s, min_step);
         const double middle = s + 0.5 * step;
@@ -265,8 +267,8 @@ LampRadianceTable::LampRadianceTable(const HalfTangentDensity& direction,
                                      const HalfTangentDensity& line, double min_albedo,
                                      double max_albedo, const Fineness& fineness)
     : phase_(direction), line_(line), line_in_table_(line.mass() - line.mass_to(k_angles.front())) {
-    // An order that adds less than this is the last; what lies near the end of the table counts for
-    // nothing in that.
+    // The series ends at an order that adds less than k_enough everywhere but near the end of the
+    // table.
     constexpr double k_enough = 1e-2, k_counting = 0.5;
     const std::size_t nr = k_radii.count(), nh = k_angles.count();
     min_albedo_ = std::clamp(min_albedo, k_min_albedo, k_max_albedo - 1e-3);
@@ -284,7 +286,7 @@ LampRadianceTable::LampRadianceTable(const HalfTangentDensity& direction,
     }
     for (int count = 1; count < fineness.orders; ++count) {
         solver.find_next_order();
-        double most = 0;
+        double largest = 0;
         for (std::size_t k = 0; k < k_albedos; ++k) {
             for (std::size_t q = 0; q < solver.size(); ++q)
                 sources[k][q] += power[k] * solver.source()[q];
@@ -293,10 +295,10 @@ LampRadianceTable::LampRadianceTable(const HalfTangentDensity& direction,
                 const double value = power[k] * solver.order()[q];
                 all[k][q] += value;
                 if (solver.radius_of(q) < k_counting * k_radii.back())
-                    most = std::max(most, value / std::max(all[k][q], k_min_value));
+                    largest = std::max(largest, value / std::max(all[k][q], k_min_value));
             }
         }
-        if (most < k_enough) break;
+        if (largest < k_enough) break;
     }
     once = solver.at_nodes_of_field(once);
     for (std::vector<std::vector<double>>* const fields : {&all, &sources})
@@ -306,10 +308,11 @@ LampRadianceTable::LampRadianceTable(const HalfTangentDensity& direction,
     };
     for (std::size_t k = 0; k < k_albedos; ++k) {
         for (std::size_t q = 0; q < once.size(); ++q) {
-            constexpr double k_min_multiple = 1e-3;  // share of all
+            constexpr double k_min_multiple = 1e-3;  // fraction of all orders
             const double value = all[k][q];
             all_.push_back(log_of(value));
-            more_.push_back(log_of(std::max(value - albedo[k] * once[q], k_min_multiple * value)));
+            multiple_.push_back(
+                log_of(std::max(value - albedo[k] * once[q], k_min_multiple * value)));
             source_.push_back(log_of(sources[k][q]));
         }
         for (std::size_t i = 0; i < nr; ++i) {
@@ -322,7 +325,7 @@ LampRadianceTable::LampRadianceTable(const HalfTangentDensity& direction,
                 scattered += 0.5 * (along(j) + along(j + 1)) * (k_angles[j + 1] - k_angles[j]);
             const double flux = std::exp(-k_radii[i]) +
                                 std::max(0.0, 2 * std::numbers::pi * k_radii[i] * scattered);
-            // It can only fall, whatever the tables' errors.
+            // The flux must not increase with the radius, whatever the errors of the tables.
             const float before = i == 0 ? 0.0F : flux_.back();
             flux_.push_back(std::min(before, log_of(flux)));
         }

@@ -14,9 +14,9 @@ namespace uw {
 namespace {
 
 constexpr double k_cells_of_particles = 8000;
-// Light outside a lamp's beam, which has been scattered before.
+// The relative intensity of a lamp outside its beam, where light arrives after scattering.
 constexpr double k_relative_beyond_beam = 0.05;
-// Light that is dimmed by so much counts no more.
+// The march ends where the transmittance has fallen to this.
 constexpr double k_negligible_transmittance = 0.02;
 
 }  // namespace
@@ -47,7 +47,7 @@ MediumRadianceCache::MediumRadianceCache(const WaterOptics& optics, const LampRa
             bounds_.min + edge_ * Vector3(static_cast<double>(n % across) + 0.5,
                                           static_cast<double>(n / across % down) + 0.5,
                                           static_cast<double>(n / across / down) + 0.5);
-        // Means over three lines through the cell.
+        // The cell's concentrations are means over three lines through it.
         for (int axis = 0; axis < 3; ++axis) {
             Vector3 half(0);
             half[axis] = 0.5 * edge_;
@@ -103,14 +103,14 @@ double MediumRadianceCache::at(const Point3& x) const {
     return cell.scattering > 0 ? static_cast<double>(cell.light) : 0;
 }
 
-// From cell to cell (Amanatides and Woo 1987).
-double MediumRadianceCache::along(const Ray& ray, double reach) const {
+// Marches from cell to cell (Amanatides and Woo 1987).
+double MediumRadianceCache::along(const Ray& ray, double max_distance) const {
     if (cells_.empty()) return 0;
     Bounds all = bounds_;
     for (int axis = 0; axis < 3; ++axis)
         all.max[axis] = all.min[axis] + edge_ * count_[static_cast<std::size_t>(axis)];
     const Interval part = inside(ray, all);
-    const double begin = std::max(part.begin, 0.0), end = std::min(part.end, reach);
+    const double begin = std::max(part.begin, 0.0), end = std::min(part.end, max_distance);
     if (!(end > begin)) return 0;
     const Point3 entry = ray.at(begin);
     std::array<int, 3> i{}, step{};
@@ -132,7 +132,7 @@ double MediumRadianceCache::along(const Ray& ray, double reach) const {
         const Cell& cell =
             cells_[static_cast<std::size_t>((i[2] * count_[1] + i[1]) * count_[0] + i[0])];
         const double length = std::max(0.0, std::min(next[a], end) - s);
-        // A rough exponential.
+        // e^-x is approximated by 1 / (1 + x).
         const double passed = 1 / (1 + static_cast<double>(cell.attenuation) * length);
         light +=
             transmittance * static_cast<double>(cell.scattering * cell.light) * length * passed;

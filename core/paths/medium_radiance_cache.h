@@ -10,22 +10,23 @@
 
 namespace uw {
 
-/// The light that lamps throw into the particles of a scene, kept in coarse cells: a plume that is
-/// lit up is itself a lamp to all around it, of which no lamp's field tells. It guides paths, so
-/// that it may be rough: nothing but their variance depends on it. All values are means over the
+/// A coarse radiance cache in the medium: the mean radiance of lamp light in cells of the particle
+/// field, for guiding. A plume that is lit illuminates what is around it, which no
+/// LampRadianceTable knows. Only the variance of paths depends on it. All values are means over the
 /// bands. Thread safe.
 class MediumRadianceCache {
   public:
-    /// Nothing, where there are no particles. Needs `lamps` only here.
+    /// Remains empty without particles. Uses `lamps` only during construction.
     MediumRadianceCache(const WaterOptics& optics, const LampRadianceTable& field,
                         const NextEventEstimator& lamps);
 
     bool empty() const { return cells_.empty(); }
-    /// The light at a point among the particles, as if it came evenly from all sides, and 0
-    /// elsewhere [W m^-2 sr^-1].
+    /// The mean radiance over all directions at a point within the particle field; 0 elsewhere [W
+    /// m^-2 sr^-1].
     double at(const Point3& x) const;
-    /// What they scatter along a ray towards its origin, from up to `reach` [m] [W m^-2 sr^-1].
-    double along(const Ray& ray, double reach) const;
+    /// The radiance that particles scatter along a ray towards its origin, from distances up to
+    /// `max_distance` [m] [W m^-2 sr^-1].
+    double along(const Ray& ray, double max_distance) const;
 
   private:
     struct Cell {

@@ -14,24 +14,24 @@ namespace uw {
 
 namespace {
 
-// Over a smaller change the light counts as even.
+// Below this optical depth the light counts as constant along the interval.
 constexpr double k_even_depth = 1e-6;
 
-/// Where on a line the parallel light of a sun is scattered along it: distances drawn as its way
-/// through uniform water attenuates it.
-class ParallelStretch {
+/// The interval of a segment that a sun's parallel light illuminates. Distances are sampled in
+/// proportion to the transmittance of uniform water, along the light and back along the segment.
+class ParallelLightInterval {
   public:
-    ParallelStretch() = default;
-    /// `lit`: what the sun illuminates of the line; may be infinite only if the light falls along
+    ParallelLightInterval() = default;
+    /// `lit`: what the sun illuminates of the line; may be infinite only if the light travels along
     /// it. `attenuation`: of the water [1/m].
-    ParallelStretch(const LampPassage& passage, const Interval& lit, double attenuation)
+    ParallelLightInterval(const LampPassage& passage, const Interval& lit, double attenuation)
         : lit_(lit), rate_(attenuation * (1 + passage.slope)) {}
 
-    /// The length over which light as bright as at the beginning would be scattered as much [m].
+    /// int e^(-rate s) ds over the interval [m].
     double effective_length() const;
-    /// The distance up to which a `share` (0..1) of all lie.
-    double draw(double share) const;
-    /// The density of what is drawn at `s` [1/m].
+    /// Samples a distance by a random number in [0, 1).
+    double draw(double u) const;
+    /// The pdf of the sampled distance [1/m].
     double density(double s) const;
 
   private:
@@ -39,50 +39,49 @@ class ParallelStretch {
     double rate_ = 0;  // of e^(-rate s) [1/m]
 };
 
-double ParallelStretch::effective_length() const {
+double ParallelLightInterval::effective_length() const {
     const double depth = rate_ * lit_.length();
     return std::abs(depth) < k_even_depth ? lit_.length() : -std::expm1(-depth) / rate_;
 }
 
-double ParallelStretch::draw(double share) const {
+double ParallelLightInterval::draw(double u) const {
     const double depth = rate_ * lit_.length();
-    const double s = std::abs(depth) < k_even_depth
-                         ? share * lit_.length()
-                         : -std::log1p(share * std::expm1(-depth)) / rate_;
+    const double s = std::abs(depth) < k_even_depth ? u * lit_.length()
+                                                    : -std::log1p(u * std::expm1(-depth)) / rate_;
     return lit_.begin + std::clamp(s, 0.0, lit_.length());
 }
 
-double ParallelStretch::density(double s) const {
+double ParallelLightInterval::density(double s) const {
     const double depth = rate_ * lit_.length();
     if (std::abs(depth) < k_even_depth) return 1 / lit_.length();
     return std::exp(-rate_ * (s - lit_.begin)) / effective_length();
 }
 
-/// Where on a segment a lamp's light is scattered once.
+/// A point on a segment where a lamp's light is scattered once, towards the segment's origin.
 struct ScatterPlace {
     std::size_t lamp = 0;
     double s = 0;             // along the segment
     double half_tangent = 0;  // of the scattering angle
     double radius = 0;        // from the light's origin
-    double density = 0;       // Lamp::spread times that of choosing it, per metre
+    double density = 0;       // Lamp::spread times the pdf of the point [1/m]
 };
 
-/// The lamps' parts in the light that the water of a segment scatters, for choosing one of them and
-/// a place: around a lamp by the scattering angle, in a sun's light by its attenuation. Reused
-/// storage.
-class WaterShares {
+/// Chooses a lamp and a point on a segment for next-event estimation of in-scattered light:
+/// equiangular sampling (Kulla and Fajardo 2012) weighted by the phase functions around a lamp, by
+/// transmittance in a sun's light. Storage is reused.
+class InScatterSampler {
   public:
     void find(const WaterOptics& optics, const ScatteringTables& tables,
               const WaterSegment& segment, const PathState& state);
 
-    /// By three random numbers, 0..1, on the segment of this `length`; none where nothing is lit.
-    /// Once after each `find`, with the same tables.
-    std::optional<ScatterPlace> choose(const ScatteringTables& tables, double length,
-                                       double of_lamp, double of_phase, double of_angle);
+    /// Samples by three random numbers in [0, 1) on the segment of this `length`; none where
+    /// nothing is lit. May be called once after each `find`, with the same tables.
+    std::optional<ScatterPlace> choose(const ScatteringTables& tables, double length, double u_lamp,
+                                       double u_phase, double u_angle);
 
   private:
-    // One lamp's part.
-    struct Share {
+    // A lamp that may be chosen.
+    struct Candidate {
         // An interval of h = tan(psi / 2).
         struct HalfTangents {
             double begin = 0, end = 0;
@@ -92,11 +91,11 @@ class WaterShares {
         double foot = 0, distance = 0;      // LampPassage
         std::array<HalfTangents, 2> parts;  // outside the lamp's sphere and within its beam
         std::size_t part_count = 0;
-        double mass = 0;               // of the weighted phase functions on them
-        std::size_t first_masses = 0;  // of masses_
-        // Members for a sun, whose mass is that of the weighted phase functions at its one angle:
+        double mass = 0;               // integral of the weighted phase functions over the parts
+        std::size_t first_masses = 0;  // index into masses_
+        // For a sun; its mass is that of the weighted phase functions at its one angle:
         bool parallel = false;
-        ParallelStretch stretch;
+        ParallelLightInterval interval;
         LampPassage passage;
     };
     // HalfTangentDensity::mass_to at both ends of a part.
@@ -104,27 +103,30 @@ class WaterShares {
         double from = 0, to = 0;
     };
 
-    Share parallel_share(const WaterOptics& optics, const ScatteringTables& tables,
-                         const WaterSegment& segment, std::size_t lamp, const LampPassage& passage,
-                         const Interval& lit);
-    static ScatterPlace place_in_parallel(const Share& share, double u);
-    std::optional<ScatterPlace> place_around(const ScatteringTables& tables, const Share& share,
-                                             double length, double of_phase, double of_angle);
+    Candidate parallel_candidate(const WaterOptics& optics, const ScatteringTables& tables,
+                                 const WaterSegment& segment, std::size_t lamp,
+                                 const LampPassage& passage, const Interval& lit);
+    static ScatterPlace sample_parallel(const Candidate& candidate, double u);
+    std::optional<ScatterPlace> sample_around(const ScatteringTables& tables,
+                                              const Candidate& candidate, double length,
+                                              double u_phase, double u_angle);
 
     std::vector<double> phase_weights_;  // of the phase functions on this segment
-    std::vector<Share> shares_;
-    std::vector<Masses> masses_;  // by share, part and phase function
+    std::vector<Candidate> candidates_;
+    std::vector<Masses> masses_;  // by candidate, part and phase function
     std::vector<double> cumulative_, phase_;
 };
 
-// The share of what a field may scatter, typically, in the choice of a phase function.
-constexpr double k_field_share = 0.25;
+// The scattering that a field of unknown profile may add, for choosing a phase function, relative
+// to the known scattering.
+constexpr double k_field_fraction = 0.25;
 
-void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables,
-                       const WaterSegment& segment, const PathState& state) {
+void InScatterSampler::find(const WaterOptics& optics, const ScatteringTables& tables,
+                            const WaterSegment& segment, const PathState& state) {
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
     const std::size_t phases = tables.phase_count();
-    // By the scattering of the whole segment: what is chosen need only resemble what it stands for.
+    // The phase functions are weighted by the scattering along the whole segment. Only the variance
+    // depends on the choice.
     const Medium& medium = *optics.scene().medium;
     phase_weights_.assign(phases, 1.0);
     if (phases > 1) {
@@ -149,9 +151,10 @@ void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables
         // A field may scatter where its profile is not known, or where nothing else does.
         if (segment.has_field || !(total > 0))
             for (std::size_t m = 0; m < phases; ++m)
-                phase_weights_[m] += tables.shares[m] * (total > 0 ? k_field_share * total : 1);
+                phase_weights_[m] +=
+                    tables.phase_fractions[m] * (total > 0 ? k_field_fraction * total : 1);
     }
-    shares_.clear();
+    candidates_.clear();
     cumulative_.clear();
     masses_.clear();
     const auto arriving = [&](std::size_t lamp, double length) {
@@ -163,27 +166,27 @@ void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables
         if (!(lit.length() > 0)) continue;
         LampPassage passage(segment.ray, lamps[j]);
         if (passage.parallel) {
-            Share share = parallel_share(optics, tables, segment, j, passage, lit);
-            const double weight = share.mass * share.stretch.effective_length() *
+            Candidate candidate = parallel_candidate(optics, tables, segment, j, passage, lit);
+            const double weight = candidate.mass * candidate.interval.effective_length() *
                                   arriving(j, lit.begin + passage.radius(lit.begin));
             if (!(weight > 0)) continue;
             total += weight;
-            shares_.push_back(share);
+            candidates_.push_back(candidate);
             cumulative_.push_back(total);
             continue;
         }
         passage.distance = std::max(passage.distance, 1e-12 * (1 + std::abs(passage.foot)));
-        Share share{.lamp = j,
-                    .foot = passage.foot,
-                    .distance = passage.distance,
-                    .parts = {},
-                    .first_masses = masses_.size(),
-                    .stretch = {},
-                    .passage = {}};
+        Candidate candidate{.lamp = j,
+                            .foot = passage.foot,
+                            .distance = passage.distance,
+                            .parts = {},
+                            .first_masses = masses_.size(),
+                            .interval = {},
+                            .passage = {}};
         const auto add_part = [&](double begin, double end) {
             if (!(end > begin)) return;
-            const Share::HalfTangents part{passage.half_tangent(begin, passage.radius(begin)),
-                                           passage.half_tangent(end, passage.radius(end))};
+            const Candidate::HalfTangents part{passage.half_tangent(begin, passage.radius(begin)),
+                                               passage.half_tangent(end, passage.radius(end))};
             double mass = 0;
             for (std::size_t m = 0; m < phases; ++m) {
                 masses_.push_back(
@@ -194,8 +197,8 @@ void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables
                 masses_.resize(masses_.size() - phases);
                 return;
             }
-            share.parts[share.part_count++] = part;
-            share.mass += mass;
+            candidate.parts[candidate.part_count++] = part;
+            candidate.mass += mass;
         };
         if (passage.distance >= k_lamp_radius) {
             add_part(lit.begin, lit.end);
@@ -205,102 +208,106 @@ void WaterShares::find(const WaterOptics& optics, const ScatteringTables& tables
             add_part(lit.begin, std::min(lit.end, passage.foot - half));
             add_part(std::max(lit.begin, passage.foot + half), lit.end);
         }
-        if (share.part_count == 0) continue;
-        // The light path R + s of a lamp never shortens along the segment.
-        const double weight =
-            lamps.size() == 1
-                ? 1
-                : share.mass / share.distance * arriving(j, lit.begin + passage.radius(lit.begin));
+        if (candidate.part_count == 0) continue;
+        // The length R + s of the light path of a lamp never decreases along the segment, so that
+        // the transmittance is greatest at its beginning.
+        const double weight = lamps.size() == 1
+                                  ? 1
+                                  : candidate.mass / candidate.distance *
+                                        arriving(j, lit.begin + passage.radius(lit.begin));
         if (!(weight > 0)) continue;
         total += weight;
-        shares_.push_back(share);
+        candidates_.push_back(candidate);
         cumulative_.push_back(total);
     }
 }
 
-WaterShares::Share WaterShares::parallel_share(const WaterOptics& optics,
-                                               const ScatteringTables& tables,
-                                               const WaterSegment& segment, std::size_t lamp,
-                                               const LampPassage& passage, const Interval& lit) {
-    Share share;
-    share.lamp = lamp;
-    share.parallel = true;
-    share.passage = passage;
+InScatterSampler::Candidate InScatterSampler::parallel_candidate(
+    const WaterOptics& optics, const ScatteringTables& tables, const WaterSegment& segment,
+    std::size_t lamp, const LampPassage& passage, const Interval& lit) {
+    Candidate candidate;
+    candidate.lamp = lamp;
+    candidate.parallel = true;
+    candidate.passage = passage;
     phase_.resize(tables.phase_count());
     tables.phase(passage.tangent, phase_);
-    for (std::size_t m = 0; m < phase_.size(); ++m) share.mass += phase_weights_[m] * phase_[m];
-    // The clearest band that scatters at all decides; if none does, only the field counts.
+    for (std::size_t m = 0; m < phase_.size(); ++m) candidate.mass += phase_weights_[m] * phase_[m];
+    // The clearest band that attenuates at all decides; if there is none, only the field counts.
     const AttenuationTable& attenuation = optics.attenuation();
-    double least = k_far;
+    double min_attenuation = k_far;
     for (std::size_t b = 0; b < optics.bands(); ++b)
-        if (attenuation.uniform[b] > 0) least = std::min(least, attenuation.uniform[b]);
-    if (least < k_far) {
-        share.stretch = {passage, lit, least};
-        return share;
+        if (attenuation.uniform[b] > 0)
+            min_attenuation = std::min(min_attenuation, attenuation.uniform[b]);
+    if (min_attenuation < k_far) {
+        candidate.interval = {passage, lit, min_attenuation};
+        return candidate;
     }
     const Interval field = inside(segment.ray, optics.scene().field->bounds());
     const Interval both{std::max(lit.begin, field.begin), std::min(lit.end, field.end)};
-    share.stretch = {passage, both.length() > 0 ? both : Interval{}, 0};
-    return share;
+    candidate.interval = {passage, both.length() > 0 ? both : Interval{}, 0};
+    return candidate;
 }
 
-std::optional<ScatterPlace> WaterShares::choose(const ScatteringTables& tables, double length,
-                                                double of_lamp, double of_phase, double of_angle) {
-    if (shares_.empty()) return std::nullopt;
-    const Choice chosen = uw::choose(cumulative_, of_lamp);
-    const Share& share = shares_[chosen.index];
+std::optional<ScatterPlace> InScatterSampler::choose(const ScatteringTables& tables, double length,
+                                                     double u_lamp, double u_phase,
+                                                     double u_angle) {
+    if (candidates_.empty()) return std::nullopt;
+    const Choice chosen = uw::choose(cumulative_, u_lamp);
+    const Candidate& candidate = candidates_[chosen.index];
     std::optional<ScatterPlace> place =
-        share.parallel ? place_in_parallel(share, of_angle)
-                       : place_around(tables, share, length, of_phase, of_angle);
+        candidate.parallel ? sample_parallel(candidate, u_angle)
+                           : sample_around(tables, candidate, length, u_phase, u_angle);
     if (place) place->density *= chosen.probability;
     return place;
 }
 
-ScatterPlace WaterShares::place_in_parallel(const Share& share, double u) {
-    const double s = share.stretch.draw(u);
-    return {share.lamp, s, share.passage.tangent, share.passage.radius(s),
-            share.stretch.density(s)};
+ScatterPlace InScatterSampler::sample_parallel(const Candidate& candidate, double u) {
+    const double s = candidate.interval.draw(u);
+    return {candidate.lamp, s, candidate.passage.tangent, candidate.passage.radius(s),
+            candidate.interval.density(s)};
 }
 
-std::optional<ScatterPlace> WaterShares::place_around(const ScatteringTables& tables,
-                                                      const Share& share, double length,
-                                                      double of_phase, double of_angle) {
+std::optional<ScatterPlace> InScatterSampler::sample_around(const ScatteringTables& tables,
+                                                            const Candidate& candidate,
+                                                            double length, double u_phase,
+                                                            double u_angle) {
     const std::size_t phases = tables.phase_count();
-    // A part of the segment and a phase function, then an angle.
+    // Chooses a part of the segment and a phase function, then an angle.
     const std::span<const Masses> masses =
-        std::span(masses_).subspan(share.first_masses, share.part_count * phases);
+        std::span(masses_).subspan(candidate.first_masses, candidate.part_count * phases);
     cumulative_.clear();
     double total = 0;
     for (std::size_t i = 0; i < masses.size(); ++i) {
         total += phase_weights_[i % phases] * (masses[i].to - masses[i].from);
         cumulative_.push_back(total);
     }
-    const std::size_t pick = uw::choose(cumulative_, of_phase).index;
+    const std::size_t pick = uw::choose(cumulative_, u_phase).index;
     const auto [from, to] = masses[pick];
-    const Share::HalfTangents& part = share.parts[pick / phases];
-    const double h = std::clamp(tables.lines[pick % phases].invert(from + of_angle * (to - from)),
+    const Candidate::HalfTangents& part = candidate.parts[pick / phases];
+    const double h = std::clamp(tables.lines[pick % phases].invert(from + u_angle * (to - from)),
                                 part.begin, part.end);
     if (!(h > 0)) return std::nullopt;
-    const double s = std::clamp(share.foot - share.distance * (1 - h * h) / (2 * h), 0.0, length);
+    const double s =
+        std::clamp(candidate.foot - candidate.distance * (1 - h * h) / (2 * h), 0.0, length);
     double density = 0;  // per unit of h
     for (std::size_t m = 0; m < phases; ++m)
         density += phase_weights_[m] * tables.lines[m].density(h);
     density /= total;
     if (!(density > 0)) return std::nullopt;
-    // ds / R^2 = 2 dh / ((1 + h^2) D)
-    return ScatterPlace{share.lamp, s, h, share.distance * (1 + h * h) / (2 * h),
-                        0.5 * (1 + h * h) * share.distance * density};
+    // The pdf per unit of s, times R^2: ds / R^2 = 2 dh / ((1 + h^2) D).
+    return ScatterPlace{candidate.lamp, s, h, candidate.distance * (1 + h * h) / (2 * h),
+                        0.5 * (1 + h * h) * candidate.distance * density};
 }
 
-struct GatheringWorkspace {
-    // One lamp's light on a surface.
-    struct SurfaceShare {
+struct NextEventWorkspace {
+    // A lamp that illuminates the surface.
+    struct DirectCandidate {
         std::size_t lamp = 0;
         double radius = 0, geometry = 0;
     };
 
-    WaterShares of_water;
-    std::vector<SurfaceShare> of_surface;
+    InScatterSampler in_scatter;
+    std::vector<DirectCandidate> direct;
     std::vector<double> cumulative;
     std::vector<double> column, p;
     WaterPoint point;
@@ -329,13 +336,13 @@ void NextEventEstimator::column_to_lamp(std::size_t lamp, const Point3& x,
 
 void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const PathState& state,
                                              PathRandom& random, ContributionSink& sink) const {
-    thread_local GatheringWorkspace w;
-    const double of_lamp = random.next(), of_phase = random.next(), of_angle = random.next();
+    thread_local NextEventWorkspace w;
+    const double u_lamp = random.next(), u_phase = random.next(), u_angle = random.next();
     const std::size_t phases = tables_.phase_count();
     if (phases == 0) return;
-    w.of_water.find(optics_, tables_, segment, state);
+    w.in_scatter.find(optics_, tables_, segment, state);
     const std::optional<ScatterPlace> place =
-        w.of_water.choose(tables_, segment.length, of_lamp, of_phase, of_angle);
+        w.in_scatter.choose(tables_, segment.length, u_lamp, u_phase, u_angle);
     if (!place) return;
     const double s = place->s;
 
@@ -374,7 +381,7 @@ void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
                                                const Spectrum& transmittance,
                                                const PathState& state, PathRandom& random,
                                                ContributionSink& sink) const {
-    thread_local GatheringWorkspace w;
+    thread_local NextEventWorkspace w;
     double u = random.next();
     const std::size_t bands = optics_.bands();
     const std::vector<Lamp>& lamps = *optics_.scene().emitters;
@@ -390,7 +397,7 @@ void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
         contribution.hit = &hit;
         sink.add(contribution);
     }
-    w.of_surface.clear();
+    w.direct.clear();
     w.cumulative.clear();
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
@@ -408,27 +415,27 @@ void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
                                                state.throughput, lamps[j].axis_intensity(), radius);
         if (!(weight > 0)) continue;
         total += weight;
-        w.of_surface.push_back({j, radius, geometry});
+        w.direct.push_back({j, radius, geometry});
         w.cumulative.push_back(total);
     }
-    if (w.of_surface.empty()) return;
+    if (w.direct.empty()) return;
     const auto [chosen, probability] = choose(w.cumulative, u);
-    const GatheringWorkspace::SurfaceShare& share = w.of_surface[chosen];
-    const Lamp& lamp = lamps[share.lamp];
+    const NextEventWorkspace::DirectCandidate& candidate = w.direct[chosen];
+    const Lamp& lamp = lamps[candidate.lamp];
     const Point3 origin = lamp.origin(hit.position);
     if (optics_.scene().surfaces->occluded(origin, hit.position)) return;
     w.column.resize(optics_.constituents());
-    column_to_lamp(share.lamp, hit.position, w.column);
+    column_to_lamp(candidate.lamp, hit.position, w.column);
     reflection.brdf(origin, w.brdf);
-    optics_.transmittances(share.radius, w.column, w.radiance);
+    optics_.transmittances(candidate.radius, w.column, w.radiance);
     for (std::size_t b = 0; b < bands; ++b)
-        radiance[b] *= share.geometry / probability * lamp.axis_intensity()[b] * w.brdf[b] *
+        radiance[b] *= candidate.geometry / probability * lamp.axis_intensity()[b] * w.brdf[b] *
                        transmittance[b] * state.throughput[b];
     PathContribution contribution = state.contribution(lamp.index(), radiance);
     ++contribution.reflections;
     contribution.place = hit.position;
     contribution.hit = &hit;
-    contribution.emitter = emitters_[share.lamp];
+    contribution.emitter = emitters_[candidate.lamp];
     sink.add(contribution);
 }
 

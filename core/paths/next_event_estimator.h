@@ -14,25 +14,32 @@
 
 namespace uw {
 
-/// Estimates the light of lamps that arrives along a segment after a single event: scattered by
-/// the water on it, or reflected by the surface at its end. Thread safe.
+/// Next-event estimation: estimates the light of lamps that arrives along a segment after a single
+/// event, in-scattered by the water on the segment or reflected by the surface at its end. Thread
+/// safe.
 class NextEventEstimator {
   public:
-    /// `deep_shadows`: columns to the lamps, one per lamp; empty: they are exact. `emitters`: the
-    /// lamps' numbers among those of the whole scene. The other references must outlive this
-    /// object.
+    /// `deep_shadows`: tabulated columns to the lamps, one per lamp; if empty, columns are exact.
+    /// `emitters`: the lamps' indices among the emitters of the whole scene. What is referred to
+    /// must outlive this object.
     NextEventEstimator(const WaterOptics& optics, const ScatteringTables& tables,
                        std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                        std::vector<std::size_t> emitters);
 
-    /// The water's: int I b p e^-tau / R^2 ds for a lamp chosen by its share, at a point chosen by
-    /// its scattering angle psi, in which 1/R^2 and the forward peak are flat: ds / R^2 = dpsi / D
-    /// with D the lamp's distance from the line; a sun's at one chosen by its attenuation.
-    /// Uses three random numbers.
+    /// Estimates the in-scattered light of one lamp, chosen in proportion to its expected
+    /// contribution,
+    ///
+    ///     int I b p e^-tau / R^2 ds,
+    ///
+    /// by equiangular sampling (Kulla and Fajardo 2012): with the scattering angle psi and the
+    /// lamp's distance D from the line, ds / R^2 = dpsi / D. Sampling psi in proportion to the
+    /// phase functions makes the forward peak constant, too. For a sun, distances are sampled by
+    /// transmittance. Uses three random numbers.
     void estimate_in_scatter(const WaterSegment& segment, const PathState& state,
                              PathRandom& random, ContributionSink& sink) const;
-    /// The surface's, for a lamp chosen by its share, and what it emits; `transmittance` is that of
-    /// the segment. Uses one random number. Precondition: segment.has_hit.
+    /// Estimates the light of one lamp, chosen in proportion to its expected contribution, that the
+    /// surface at the end reflects, and adds what the surface emits. `transmittance`: that of the
+    /// segment. Uses one random number. Precondition: segment.has_hit.
     void estimate_direct_light(const WaterSegment& segment, const Spectrum& transmittance,
                                const PathState& state, PathRandom& random,
                                ContributionSink& sink) const;

@@ -12,7 +12,7 @@ namespace uw {
 
 namespace {
 
-constexpr std::size_t k_lanes = 4;  // of the widest registers that are common
+constexpr std::size_t k_lanes = 4;  // doubles in the widest common registers
 static_assert(k_max_bands % k_lanes == 0);
 
 bool crosses(const Bounds& bounds, const Ray& ray, double length) {
@@ -32,7 +32,7 @@ bool crosses(const Bounds& bounds, const Ray& ray, double length) {
     return begin < end;
 }
 
-// The knot before `distance`, which has one after it.
+// The last knot not beyond `distance` that has one after it.
 std::size_t knot_before(const ConcentrationProfile& profile, double distance) {
     const auto above = std::upper_bound(profile.s.begin() + 1, profile.s.end() - 1, distance);
     return static_cast<std::size_t>(above - profile.s.begin()) - 1;
@@ -160,7 +160,7 @@ double WaterOptics::distance_at_depth(const WaterSegment& segment, std::size_t b
     const double c0 = attenuation_.uniform[band];
     const ConcentrationProfile& profile = segment.profile;
     if (profile.s.empty()) return c0 * segment.length > depth ? depth / c0 : segment.length;
-    // The last knot before which the optical depth is less.
+    // Bisects for the last knot at which the optical depth is not greater.
     std::size_t low = 0, high = profile.s.size() - 1;
     if (depth_at_knot(segment, band, high) <= depth) return segment.length;
     while (high - low > 1) {
@@ -175,7 +175,7 @@ double WaterOptics::distance_at_depth(const WaterSegment& segment, std::size_t b
     }
     const double length = profile.s[high] - profile.s[low];
     const double rest = depth - depth_at_knot(segment, band, low);
-    // rest = begin t + (end - begin) t^2 / (2 length), in a form without cancellation.
+    // Solves rest = begin t + (end - begin) t^2 / (2 length) for t, in a form without cancellation.
     const double root = std::sqrt(std::max(0.0, begin * begin + 2 * (end - begin) / length * rest));
     return profile.s[low] + (begin + root > 0 ? std::min(length, 2 * rest / (begin + root)) : 0.0);
 }

@@ -24,7 +24,7 @@ PathTables::PathTables(const LitScene& scene, const ScatteringTables& tables,
             include(constituent.per_unit);
         albedo[b] = std::max(albedo[b], 0.1);
     }
-    // Without any, surfaces may shine.
+    // Without lamps, emissive surfaces may still give light.
     const std::span<double> of_bands = light.first(optics.bands());
     if (std::ranges::all_of(of_bands, [](double value) { return value == 0; }))
         std::ranges::fill(of_bands, 1.0);
@@ -32,7 +32,7 @@ PathTables::PathTables(const LitScene& scene, const ScatteringTables& tables,
 
 namespace {
 
-// The lamps' emitters, or those of their mirror images.
+// A lamp's emitters, and those of its mirror image.
 struct LampEmitters {
     std::vector<std::size_t> own, images;
 };
@@ -50,15 +50,17 @@ std::vector<LampEmitters> emitters_by_lamp(const std::vector<Lamp>& emitters) {
 
 std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
     const std::vector<LampEmitters> lamps = emitters_by_lamp(emitters);
-    std::size_t most = 1;
-    for (const LampEmitters& lamp : lamps) most = std::max(most, lamp.own.size());
-    std::vector<LampView> views(most);
-    // Evenly among the views, each emitter as bright as it is in few of them.
-    const auto share_out = [&](const std::vector<std::size_t>& of_lamp) {
+    std::size_t view_count = 1;
+    for (const LampEmitters& lamp : lamps) view_count = std::max(view_count, lamp.own.size());
+    std::vector<LampView> views(view_count);
+    // Distributes a lamp's emitters evenly among the views, each the brighter the fewer views it is
+    // in.
+    const auto distribute = [&](const std::vector<std::size_t>& of_lamp) {
         const std::size_t count = of_lamp.size();
         for (std::size_t e = 0; e < count; ++e) {
-            const std::size_t begin = e * most / count, end = (e + 1) * most / count;
-            const double weight = static_cast<double>(most) / static_cast<double>(end - begin);
+            const std::size_t begin = e * view_count / count, end = (e + 1) * view_count / count;
+            const double weight =
+                static_cast<double>(view_count) / static_cast<double>(end - begin);
             const Lamp& emitter = emitters[of_lamp[e]];
             for (std::size_t view = begin; view < end; ++view) {
                 views[view].lamps.push_back(count == 1 ? emitter : emitter.brightened(weight));
@@ -67,8 +69,8 @@ std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
         }
     };
     for (const LampEmitters& lamp : lamps) {
-        share_out(lamp.own);
-        share_out(lamp.images);
+        distribute(lamp.own);
+        distribute(lamp.images);
     }
     return views;
 }

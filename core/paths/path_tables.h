@@ -14,29 +14,29 @@
 
 namespace uw {
 
-/// A scene's lamps as a light path sees them: each as one point, whatever its extent. The mean over
-/// all views is the light of the lamps, so that a path that chooses one at random costs what it
-/// does among point lamps.
+/// A scene's lamps as one light path sees them: each as a single point, whatever its extent. The
+/// mean over all views is the light of the lamps. A path that chooses a view at random costs as
+/// much as among point lamps.
 struct LampView {
     std::vector<Lamp> lamps;            // one per lamp, and its mirror image if it has one
-    std::vector<std::size_t> emitters;  // which of the scene's each of them is
+    std::vector<std::size_t> emitters;  // index of each among the scene's emitters
 };
 
-/// As many views as the lamp with most emitters has, and one without lamps. `emitters`: as
-/// LitScene::emitters.
+/// As many views as the lamp with the most emitters has, and one if there are no lamps. `emitters`:
+/// as LitScene::emitters.
 std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters);
 
-/// What all paths through a scene look up that see its lamps alike (LampView).
+/// What all paths through a scene that see the same LampView look up.
 struct PathTables {
     WaterOptics optics;
     const ScatteringTables& scattering;
     NextEventEstimator lamps;
     GuidingTables guides;
     Spectrum light;   // of all lamps on their axes, or 1 where there is none
-    Spectrum albedo;  // the greatest of all the water may hold, at least 0.1: guides paths
+    Spectrum albedo;  // the greatest of all that the water may contain, at least 0.1; for guiding
 
-    /// `scene`: with one emitter per lamp. `deep_shadows` and `emitters`: as NextEventEstimator
-    /// takes them. What is referred to must outlive this object.
+    /// `scene`: with one emitter per lamp. `deep_shadows` and `emitters`: see NextEventEstimator.
+    /// What is referred to must outlive this object.
     PathTables(const LitScene& scene, const ScatteringTables& tables,
                std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                std::vector<std::size_t> emitters);

@@ -8,33 +8,33 @@ namespace uw {
 
 namespace {
 
-// Shares of the phase functions in a lobe that serves all of the water: those of the scattering
-// coefficients of everything in it.
-std::vector<double> typical_shares(const Medium& medium) {
-    std::vector<double> shares(medium.phase_functions.size(), 0.0);
+// The fractions of the phase functions in the scattering of everything in the water, as one
+// distribution for all of it.
+std::vector<double> typical_phase_fractions(const Medium& medium) {
+    std::vector<double> fractions(medium.phase_functions.size(), 0.0);
     const auto bands = static_cast<std::size_t>(medium.band_count());
     const auto include = [&](const OpticalCoefficients& coefficients) {
         double all = 0;
         for (const Spectrum& b : coefficients.scattering)
             for (const double value : b.first(bands)) all += value;
         if (!(all > 0)) return;
-        for (std::size_t m = 0; m < shares.size(); ++m)
+        for (std::size_t m = 0; m < fractions.size(); ++m)
             for (const double value : coefficients.scattering[m].first(bands))
-                shares[m] += value / all;
+                fractions[m] += value / all;
     };
     include(medium.uniform);
     for (const Constituent& constituent : medium.constituents) include(constituent.per_unit);
     double sum = 0;
-    for (const double share : shares) sum += share;
-    for (double& share : shares) share = sum > 0 ? share / sum : 0;
-    return shares;
+    for (const double fraction : fractions) sum += fraction;
+    for (double& fraction : fractions) fraction = sum > 0 ? fraction / sum : 0;
+    return fractions;
 }
 
 }  // namespace
 
 ScatteringTables::ScatteringTables(const Medium& medium,
                                    const LampRadianceTable::Fineness& fineness)
-    : phases(medium), shares(typical_shares(medium)), fineness_(fineness) {
+    : phases(medium), phase_fractions(typical_phase_fractions(medium)), fineness_(fineness) {
     const std::span<const double> nodes = HalfTangentDensity::nodes();
     const std::size_t count = medium.phase_functions.size();
     std::vector<double> p(count * nodes.size());
@@ -73,7 +73,7 @@ LampRadianceTable ScatteringTables::make_field() const {
     for (const double h : HalfTangentDensity::nodes()) {
         phase(h, p);
         double mean = 0;
-        for (std::size_t m = 0; m < p.size(); ++m) mean += shares[m] * p[m];
+        for (std::size_t m = 0; m < p.size(); ++m) mean += phase_fractions[m] * p[m];
         const double dpsi = 2 / (1 + h * h);
         of_line.push_back(mean * dpsi);
         of_direction.push_back(2 * std::numbers::pi * mean * dpsi * h * dpsi);

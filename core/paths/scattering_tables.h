@@ -12,22 +12,22 @@
 
 namespace uw {
 
-/// The phase functions of a medium and the densities that random paths are drawn from.
+/// The phase functions of a medium, and densities for sampling scattering angles.
 struct ScatteringTables {
     PhaseTable phases;
-    /// The rough share of each phase function in the scattering of all that the water may hold;
-    /// their sum is 1.
-    std::vector<double> shares;
+    /// The typical fraction of each phase function in the scattering of all that the water may
+    /// contain; they add up to 1.
+    std::vector<double> phase_fractions;
 
     // One per phase function m of the medium:
-    /// p_m(psi) over directions: the angle of a scattering.
+    /// p_m(psi) over directions, for sampling the direction of a scattering.
     std::vector<HalfTangentDensity> directions;
-    /// p_m(psi) over angles: where on a line the light of a lamp is scattered along it, since
-    /// ds / R^2 = dpsi / D with D the lamp's distance from the line.
+    /// p_m(psi) over angles, for sampling where on a line a lamp's light is scattered along it: ds
+    /// / R^2 = dpsi / D with D the lamp's distance from the line.
     std::vector<HalfTangentDensity> lines;
-    /// All light that the water scatters around a point lamp, for the mean phase function and the
-    /// albedos of all that it may hold. Found when it is first asked for, in about 0.1 s, or 0.02 s
-    /// if it is coarse.
+    /// The radiance around a point lamp by all orders of scattering, for the mean phase function
+    /// and the albedos of all that the water may contain. Computed on first use, in about 0.1 s, or
+    /// 0.02 s if it is coarse.
     const LampRadianceTable& field() const;
 
     /// `fineness`: of `field`.
@@ -51,7 +51,7 @@ struct ScatteringTables {
     LampRadianceTable::Fineness fineness_;
     double min_albedo_ = 1, max_albedo_ = 0;
     mutable std::mutex field_mutex_;
-    mutable std::optional<LampRadianceTable> field_;  // made where it is first asked for
+    mutable std::optional<LampRadianceTable> field_;  // computed on first use
 };
 
 }  // namespace uw

@@ -91,8 +91,8 @@ HalfTangentDensity density_around_lamps(const ScatteringTables& tables) {
     for (const double h : HalfTangentDensity::nodes()) {
         double value = h > 1 ? 0 : 1 / (octaves * std::max(h, k_min_half_tangent));
         for (std::size_t m = 0; m < tables.phase_count(); ++m)
-            value +=
-                tables.shares[m] * tables.directions[m].density(h) / tables.directions[m].mass();
+            value += tables.phase_fractions[m] * tables.directions[m].density(h) /
+                     tables.directions[m].mass();
         values.push_back(value);
     }
     return HalfTangentDensity(values);
