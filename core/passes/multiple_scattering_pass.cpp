@@ -242,7 +242,7 @@ void MultipleScattering::prepare(const PixelWindow& window, const ShareCallback&
     const RaySource& rays = pixels_.rays();
     NodeLattice lattice(estimator_, NodeLattice::Positions::over(rays, spacing_));
     // The corners of all cells in the window, and what these are fitted to.
-    constexpr int k_margin = k_smoothing_reach + k_search + 1;
+    constexpr int k_margin = k_smoothing_radius + k_search + 1;
     const NodeWindow nodes{std::max(0, window.x0 / spacing_ - k_margin),
                            std::max(0, window.y0 / spacing_ - k_margin),
                            std::min(lattice.all().i1, (window.x1 - 1) / spacing_ + 2 + k_margin),
@@ -287,7 +287,7 @@ void MultipleScattering::take_away_halo(NodeLattice& lattice, const IrradianceCa
         halo.assign(of_node.begin(), of_node.end());
         if (halo_->is_of_mean_water()) spread_halo(node, halo);
         for (std::size_t i = 0; i < halo_->interval_count(); ++i) {
-            if (intervals_.begin(i) >= node.reach) break;
+            if (intervals_.begin(i) >= node.max_distance) break;
             for (NodeRadiance& half : node.halves) {
                 float mean = 0;
                 for (std::size_t k = 0; k < values; ++k) {
@@ -318,7 +318,7 @@ void MultipleScattering::spread_halo(const RadianceNode& node, std::span<float> 
         double all = 0, scattered = 0;
         const auto for_each = [&](const auto& visit) {
             for (std::size_t i = 0; i < halo_->interval_count(); ++i)
-                if (intervals_.begin(i) < node.reach)
+                if (intervals_.begin(i) < node.max_distance)
                     visit(halo[i * values + k],
                           static_cast<double>(node.weights[i * bands_ + band]));
         };
@@ -326,7 +326,7 @@ void MultipleScattering::spread_halo(const RadianceNode& node, std::span<float> 
             all += static_cast<double>(light);
             scattered += weight;
         });
-        if (scattered > 0) all *= share_of_halo(scattered, node.reach, band) / scattered;
+        if (scattered > 0) all *= share_of_halo(scattered, node.max_distance, band) / scattered;
         for_each([&](float& light, double weight) { light = static_cast<float>(all * weight); });
     }
 }
@@ -368,7 +368,7 @@ void MultipleScattering::add_water(const PixelView& view, std::span<double> ligh
             if (!(total > 0)) break;
             for (std::size_t b = 0; b < bands_; ++b) {
                 const double weight = static_cast<double>(weights[interval * bands_ + b]) *
-                                      intervals_.share(interval, b, view.distances[d]);
+                                      intervals_.fraction_before(interval, b, view.distances[d]);
                 const double share = view.weights[d] * weight / total;
                 up_to_distance[b] += weight;
                 for (std::size_t group = 0; group < groups; ++group) {

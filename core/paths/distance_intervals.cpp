@@ -11,10 +11,11 @@ namespace uw {
 namespace {
 
 constexpr int k_intervals = 20;   // up to the farthest surface
-constexpr double k_growth = 1.5;  // of those beyond
-// Optical depth beyond which nothing is seen, and that up to which open water has fine intervals.
-constexpr double k_reach_depth = 15, k_fine_depth = 3;
-constexpr int k_rays_across = 16;  // of a coarse lattice that finds how far surfaces are
+constexpr double k_growth = 1.5;  // ratio of the ends of the intervals beyond
+// Optical depth beyond which nothing is visible, and that up to which open water has fine
+// intervals.
+constexpr double k_dark_depth = 15, k_fine_depth = 3;
+constexpr int k_rays_across = 16;  // of a lattice of rays that measures the distances of surfaces
 
 struct Extent {
     double far = 0;        // distance of the farthest surface [m]
@@ -39,14 +40,14 @@ Extent find_extent(const RaySource& rays, const Surfaces& surfaces) {
     return extent;
 }
 
-// Open water matters as far as the lamps are away, and to some optical depth.
-double fine_reach_of_open_water(const RaySource& rays, const LitScene& scene, double c) {
-    double reach = c > 0 ? k_fine_depth / c : 0;
+// Open water is resolved to twice the distance of the farthest lamp, or to a few mean free paths.
+double fine_distance_in_open_water(const RaySource& rays, const LitScene& scene, double c) {
+    double max_distance = c > 0 ? k_fine_depth / c : 0;
     const auto ray = rays.refracted_ray(0.5 * rays.width(), 0.5 * rays.height());
-    if (!ray) return reach;
+    if (!ray) return max_distance;
     for (const Lamp& lamp : *scene.emitters)
-        reach = std::max(reach, 2 * distance(ray->origin, lamp.origin(ray->origin)));
-    return reach;
+        max_distance = std::max(max_distance, 2 * distance(ray->origin, lamp.origin(ray->origin)));
+    return max_distance;
 }
 
 }  // namespace
@@ -54,16 +55,17 @@ double fine_reach_of_open_water(const RaySource& rays, const LitScene& scene, do
 DistanceIntervals::DistanceIntervals(const RaySource& rays, const LitScene& scene)
     : attenuation_(*scene.medium) {
     const double c = attenuation_.uniform.least(static_cast<std::size_t>(attenuation_.band_count));
-    const double reach = c > 0 ? std::min(k_far, k_reach_depth / c) : k_far;
+    const double max_distance = c > 0 ? std::min(k_far, k_dark_depth / c) : k_far;
     const Extent extent = find_extent(rays, *scene.surfaces);
     double fine = extent.far;
-    if (extent.is_open) fine = std::max(fine, fine_reach_of_open_water(rays, scene, c));
-    if (!(fine > 0)) fine = reach;
-    fine = std::min(fine, reach);
-    // Closer together near the camera.
+    if (extent.is_open) fine = std::max(fine, fine_distance_in_open_water(rays, scene, c));
+    if (!(fine > 0)) fine = max_distance;
+    fine = std::min(fine, max_distance);
+    // The intervals are closer together near the camera.
     for (int i = 0; i <= k_intervals; ++i)
         ends_.push_back(fine * std::pow(static_cast<double>(i) / k_intervals, 1.5));
-    while (ends_.back() < reach) ends_.push_back(std::min(reach, k_growth * ends_.back()));
+    while (ends_.back() < max_distance)
+        ends_.push_back(std::min(max_distance, k_growth * ends_.back()));
     ends_.back() = std::max(ends_.back(), k_far);
 }
 
@@ -72,7 +74,8 @@ std::size_t DistanceIntervals::at(double distance) const {
     return static_cast<std::size_t>(end - ends_.begin()) - 1;
 }
 
-double DistanceIntervals::share(std::size_t interval, std::size_t band, double distance) const {
+double DistanceIntervals::fraction_before(std::size_t interval, std::size_t band,
+                                          double distance) const {
     const double from = begin(interval), to = end(interval);
     if (distance >= to) return 1;
     if (distance <= from) return 0;
@@ -83,7 +86,7 @@ double DistanceIntervals::share(std::size_t interval, std::size_t band, double d
 
 namespace {
 
-// How closely optical depths along a ray are resolved.
+// The error with which profiles along a ray may approximate optical depths.
 constexpr double k_depth_tolerance = 5e-3;
 
 // int_0^1 e^-(t x) dt, where e^-x is `transmittance`.
@@ -102,9 +105,9 @@ IntervalWeights::IntervalWeights(const LitScene& scene, const DistanceIntervals&
       scattering_(scene.medium->uniform.total_scattering()) {
     for (const Constituent& constituent : scene.medium->constituents)
         per_unit_.push_back(constituent.per_unit.total_scattering());
-    whole_.assign(intervals.count() * bands_, 0.0F);
+    uniform_weights_.assign(intervals.count() * bands_, 0.0F);
     for (std::size_t i = 0; i < intervals.count(); ++i)
-        add_uniform(intervals.begin(i), intervals.end(i), i, whole_);
+        add_uniform(intervals.begin(i), intervals.end(i), i, uniform_weights_);
 }
 
 void IntervalWeights::find(const Ray& ray, std::vector<float>& weights) const {
@@ -112,12 +115,12 @@ void IntervalWeights::find(const Ray& ray, std::vector<float>& weights) const {
     if (vary()) {
         scene_.field->profile_within(tolerance_, ray, k_far, profile);
         if (profile.s.size() > 2 || !profile.empty_between(0)) {
-            weights.assign(whole_.size(), 0.0F);
+            weights.assign(uniform_weights_.size(), 0.0F);
             add_profile(profile, weights);
             return;
         }
     }
-    weights = whole_;
+    weights = uniform_weights_;
 }
 
 void IntervalWeights::add_uniform(double begin, double end, std::size_t interval,
@@ -130,8 +133,8 @@ void IntervalWeights::add_uniform(double begin, double end, std::size_t interval
     }
 }
 
-// Between knots and ends of intervals, with the mean scattering coefficient of each piece and a
-// constant attenuation.
+// Integrates between the knots of the profile and the ends of the intervals. The scattering and
+// attenuation coefficients of each piece are its means.
 void IntervalWeights::add_profile(const ConcentrationProfile& profile,
                                   std::vector<float>& weights) const {
     const std::size_t count = per_unit_.size();

@@ -9,32 +9,34 @@
 
 namespace uw {
 
-/// Intervals of distance along all camera rays of an image, in which the water's light varies
-/// little but for its attenuation. They depend on the scene and the camera, and on no part of the
-/// image.
+/// Intervals of distance along the camera rays of an image, within which the in-scattered radiance
+/// varies little but for its attenuation. They depend on the scene and the camera alone, whatever
+/// part of the image is rendered.
 class DistanceIntervals {
   public:
     DistanceIntervals(const RaySource& rays, const LitScene& scene);
 
     std::size_t count() const { return ends_.size() - 1; }
-    /// [m]; the first begins at 0, the last ends at k_far or beyond all that is seen.
+    /// The ends of an interval [m]: the first begins at 0, the last ends at k_far or beyond
+    /// everything that is visible.
     double begin(std::size_t interval) const { return ends_[interval]; }
     double end(std::size_t interval) const { return ends_[interval + 1]; }
-    /// The interval that `distance` lies in.
+    /// The index of the interval that contains `distance`.
     std::size_t at(double distance) const;
-    /// The share of an interval's light in `band` that comes from before `distance`, for uniform
-    /// water that glows evenly: 0..1.
-    double share(std::size_t interval, std::size_t band, double distance) const;
+    /// The fraction (0..1) of an interval's light in `band` that comes from before `distance`, if
+    /// uniform water has the same source radiance everywhere:
+    ///     (1 - e^(-c (distance - begin))) / (1 - e^(-c (end - begin))).
+    double fraction_before(std::size_t interval, std::size_t band, double distance) const;
 
   private:
     AttenuationTable attenuation_;
     std::vector<double> ends_;
 };
 
-/// How much of the light around it the water of each interval of distance scatters to the camera,
-/// if that light is the same from everywhere: int b e^-tau ds along a ray, by interval and band.
-/// What light paths find in an interval, divided by this, is a mean radiance; it varies little from
-/// ray to ray however sharp the concentrations are.
+/// The light that the water of each interval scatters to the camera if the radiance around it is 1
+/// everywhere: int b e^-tau ds along a ray, by interval and band. The light that paths find in an
+/// interval, divided by this weight, is a mean radiance, which varies little from ray to ray
+/// however sharp the concentrations are.
 class IntervalWeights {
   public:
     /// The scene and the intervals must outlive this object.
@@ -42,14 +44,14 @@ class IntervalWeights {
 
     const DistanceIntervals& intervals() const { return intervals_; }
 
-    /// Whether they differ from ray to ray.
+    /// Whether the weights differ from ray to ray.
     bool vary() const { return !scene_.field->bounds().empty(); }
-    /// Finds the weights of all water along a ray, whatever surfaces it meets:
-    /// [interval * bands + band]. Where a surface cuts an interval, DistanceIntervals::share of it
-    /// lies before the surface. Thread safe.
+    /// Computes the weights of all water along a ray, as if no surface ended it: [interval * bands
+    /// + band]. Where a surface cuts an interval, multiply by DistanceIntervals::fraction_before.
+    /// Thread safe.
     void find(const Ray& ray, std::vector<float>& weights) const;
     /// The weights of uniform water, which are the same on all rays.
-    const std::vector<float>& of_uniform_water() const { return whole_; }
+    const std::vector<float>& of_uniform_water() const { return uniform_weights_; }
 
   private:
     void add_uniform(double begin, double end, std::size_t interval,
@@ -61,9 +63,9 @@ class IntervalWeights {
     AttenuationTable attenuation_;
     DepthTolerance tolerance_;
     std::size_t bands_;
-    Spectrum scattering_;             // of the uniform water [1/m]
-    std::vector<Spectrum> per_unit_;  // of the constituents [1/m per unit]
-    std::vector<float> whole_;        // of the uniform water's intervals
+    Spectrum scattering_;                 // of the uniform water [1/m]
+    std::vector<Spectrum> per_unit_;      // of the constituents [1/m per unit]
+    std::vector<float> uniform_weights_;  // of the uniform water's intervals
 };
 
 }  // namespace uw

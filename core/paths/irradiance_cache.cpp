@@ -12,15 +12,16 @@ namespace uw {
 
 namespace {
 
-// Points that take part, and those that are looked through for some that face the same way.
+// The number of records that are interpolated, and that of nearby ones among which others are
+// sought if the nearest face other ways.
 constexpr std::size_t k_near = 8, k_max_near = 64;
-// Points tell of a place if the normals agree, and if it lies no farther from their tangent planes
-// than this, relative to its distance.
+// A record applies at a point if the normals agree, and if the point is no farther from the
+// record's tangent plane than this, relative to its distance.
 constexpr double k_min_cosine = 0.5, k_max_slope = 0.35;
 
 }  // namespace
 
-/// The nearest points, by ascending distance.
+/// The nearest records, by ascending distance.
 struct IrradianceCache::Near {
     std::array<std::size_t, k_max_near> index;
     std::array<double, k_max_near> square;  // of the distance [m^2]
@@ -29,19 +30,19 @@ struct IrradianceCache::Near {
 
 class IrradianceCache::Tree {
   public:
-    explicit Tree(std::vector<IrradianceRecord> points)
-        : points_(std::move(points)),
+    explicit Tree(std::vector<IrradianceRecord> records)
+        : records_(std::move(records)),
           index_(3, *this, nanoflann::KDTreeSingleIndexAdaptorParams(8)) {
-        if (!points_.empty()) index_.buildIndex();
+        if (!records_.empty()) index_.buildIndex();
     }
     Tree(const Tree&) = delete;
     Tree& operator=(const Tree&) = delete;
 
-    const IrradianceRecord& point(std::size_t index) const { return points_[index]; }
+    const IrradianceRecord& record(std::size_t index) const { return records_[index]; }
 
     void find(const Point3& x, std::size_t count, Near& near) const {
         near.count = 0;
-        if (points_.empty()) return;
+        if (records_.empty()) return;
         const std::array<double, 3> at{x.x, x.y, x.z};
         nanoflann::KNNResultSet<double, std::size_t> result(count);
         result.init(near.index.data(), near.square.data());
@@ -49,10 +50,10 @@ class IrradianceCache::Tree {
         near.count = result.size();
     }
 
-    // What nanoflann asks for.
-    std::size_t kdtree_get_point_count() const { return points_.size(); }
+    // The interface that nanoflann requires.
+    std::size_t kdtree_get_point_count() const { return records_.size(); }
     double kdtree_get_pt(std::size_t index, std::size_t axis) const {
-        return points_[index].position[static_cast<int>(axis)];
+        return records_[index].position[static_cast<int>(axis)];
     }
     template <class Box>
     bool kdtree_get_bbox(Box&) const {
@@ -60,7 +61,7 @@ class IrradianceCache::Tree {
     }
 
   private:
-    std::vector<IrradianceRecord> points_;
+    std::vector<IrradianceRecord> records_;
     nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Tree>, Tree, 3,
                                         std::size_t>
         index_;
@@ -68,11 +69,11 @@ class IrradianceCache::Tree {
 
 namespace {
 
-// How well a point at this squared distance tells of the hit but for its distance: 0..1.
-double agreement(const IrradianceRecord& point, const SurfaceHit& hit, double square) {
-    const double cosine = glm::dot(point.normal, hit.normal);
+// The weight (0..1) of a record at this squared distance from the hit, apart from its distance.
+double agreement(const IrradianceRecord& record, const SurfaceHit& hit, double square) {
+    const double cosine = glm::dot(record.normal, hit.normal);
     if (!(cosine > k_min_cosine)) return 0;
-    const double off = glm::dot(hit.position - point.position, point.normal);
+    const double off = glm::dot(hit.position - record.position, record.normal);
     if (off * off > k_max_slope * k_max_slope * square + 1e-12) return 0;
     const double agreeing = (cosine - k_min_cosine) / (1 - k_min_cosine);
     return agreeing * agreeing;
@@ -80,9 +81,9 @@ double agreement(const IrradianceRecord& point, const SurfaceHit& hit, double sq
 
 }  // namespace
 
-IrradianceCache::IrradianceCache(std::vector<IrradianceRecord> points, std::vector<float> radiance,
+IrradianceCache::IrradianceCache(std::vector<IrradianceRecord> records, std::vector<float> radiance,
                                  std::size_t values)
-    : tree_(std::make_unique<Tree>(std::move(points))),
+    : tree_(std::make_unique<Tree>(std::move(records))),
       radiance_(std::move(radiance)),
       values_(values) {}
 
@@ -90,53 +91,53 @@ IrradianceCache::~IrradianceCache() = default;
 IrradianceCache::IrradianceCache(IrradianceCache&&) noexcept = default;
 IrradianceCache& IrradianceCache::operator=(IrradianceCache&&) noexcept = default;
 
-// By a plane through the nearest points (local linear regression, Cleveland 1979): a mean of them
-// would tell of the inside of a lit side at its edges, and of less light where it is brightest.
+// Local linear regression (Cleveland 1979) through the nearest records. A mean of them would be
+// biased at the edges of a lit side, towards its inside, and too dark where it is brightest.
 void IrradianceCache::find(const SurfaceHit& hit, std::span<double> radiance) const {
     std::ranges::fill(radiance, 0.0);
     Near near;
     tree_->find(hit.position, k_near, near);
     if (near.count == 0) return;
-    std::array<double, k_max_near> shares;
-    if (!find_shares(hit, near, shares)) {
+    std::array<double, k_max_near> coefficients;
+    if (!find_coefficients(hit, near, coefficients)) {
         tree_->find(hit.position, k_max_near, near);
-        if (!find_shares(hit, near, shares)) {
-            // The nearest that faces the same half of space.
+        if (!find_coefficients(hit, near, coefficients)) {
+            // Falls back on the nearest record that faces the same half-space.
             const auto faces = [&](std::size_t index) {
-                return glm::dot(tree_->point(index).normal, hit.normal) > 0;
+                return glm::dot(tree_->record(index).normal, hit.normal) > 0;
             };
             const auto end = near.index.begin() + static_cast<std::ptrdiff_t>(near.count);
             const auto found = std::find_if(near.index.begin(), end, faces);
             if (found == end) return;
-            std::fill(shares.begin(), shares.end(), 0.0);
-            shares[static_cast<std::size_t>(found - near.index.begin())] = 1;
+            std::fill(coefficients.begin(), coefficients.end(), 0.0);
+            coefficients[static_cast<std::size_t>(found - near.index.begin())] = 1;
         }
     }
     for (std::size_t i = 0; i < near.count; ++i) {
-        if (shares[i] == 0) continue;
-        const float* of_point = &radiance_[near.index[i] * values_];
+        if (coefficients[i] == 0) continue;
+        const float* record_values = &radiance_[near.index[i] * values_];
         for (std::size_t k = 0; k < values_; ++k)
-            radiance[k] += shares[i] * static_cast<double>(of_point[k]);
+            radiance[k] += coefficients[i] * static_cast<double>(record_values[k]);
     }
     for (double& value : radiance) value = std::max(value, 0.0);
 }
 
-bool IrradianceCache::find_shares(const SurfaceHit& hit, const Near& near,
-                                  std::span<double> shares) const {
-    // Keeps the plane level where the points say little of its slope.
+bool IrradianceCache::find_coefficients(const SurfaceHit& hit, const Near& near,
+                                        std::span<double> coefficients) const {
+    // Regularises the slope where the records determine it poorly.
     constexpr double k_ridge = 0.005;
     const double farthest = std::sqrt(std::max(near.square[near.count - 1], 1e-24));
     std::array<double, k_max_near> weights{}, x{}, y{};
     const auto [u, v] = Tangents(hit.normal);
     double s0 = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
     for (std::size_t i = 0; i < near.count; ++i) {
-        const IrradianceRecord& point = tree_->point(near.index[i]);
-        const double agreeing = agreement(point, hit, near.square[i]);
+        const IrradianceRecord& record = tree_->record(near.index[i]);
+        const double agreeing = agreement(record, hit, near.square[i]);
         if (!(agreeing > 0)) continue;
-        // The farthest counts for nearly nothing, so that the light is continuous.
+        // The farthest has nearly no weight, so that the result is continuous.
         const double nearness = 1 - std::sqrt(near.square[i]) / farthest;
         const double w = agreeing * (nearness * nearness + 1e-4);
-        const Vector3 offset = (point.position - hit.position) / farthest;
+        const Vector3 offset = (record.position - hit.position) / farthest;
         weights[i] = w;
         x[i] = glm::dot(offset, u);
         y[i] = glm::dot(offset, v);
@@ -155,7 +156,7 @@ bool IrradianceCache::find_shares(const SurfaceHit& hit, const Near& near,
     const double gy = (sy * sxx - sx * sxy) / determinant;
     const double all = s0 - gx * sx - gy * sy;
     for (std::size_t i = 0; i < near.count; ++i)
-        shares[i] = weights[i] * (1 - gx * x[i] - gy * y[i]) / all;
+        coefficients[i] = weights[i] * (1 - gx * x[i] - gy * y[i]) / all;
     return true;
 }
 
@@ -163,7 +164,7 @@ bool IrradianceCache::covers(const SurfaceHit& hit, double radius) const {
     Near near;
     tree_->find(hit.position, k_max_near, near);
     for (std::size_t i = 0; i < near.count && near.square[i] <= radius * radius; ++i)
-        if (agreement(tree_->point(near.index[i]), hit, near.square[i]) > 0) return true;
+        if (agreement(tree_->record(near.index[i]), hit, near.square[i]) > 0) return true;
     return false;
 }
 

@@ -10,20 +10,20 @@
 
 namespace uw {
 
-/// A point on a surface of which the indirect light is known.
+/// A point on a surface at which indirect irradiance is cached.
 struct IrradianceRecord {
     Point3 position;
     Vector3 normal{0, 0, 1};  // shading normal, unit
 };
 
-/// The indirect light on surfaces, that which was scattered or reflected before it arrives: known
-/// at points that lie scattered over them, and interpolated in between (Ward, Rubinstein and Clear
-/// 1988, but with points that are given). Thread safe.
+/// A cache of indirect light on surfaces, i.e. light that was scattered or reflected before it
+/// arrives, interpolated between scattered records (Ward et al. 1988, but the records are given and
+/// not made on demand). Thread safe.
 class IrradianceCache {
   public:
-    /// `radiance`: what a white surface would reflect of it, [point * values + value]
-    /// [W m^-2 sr^-1].
-    IrradianceCache(std::vector<IrradianceRecord> points, std::vector<float> radiance,
+    /// `radiance`: the indirect irradiance / pi, as a white surface would reflect it, [record *
+    /// values + value] [W m^-2 sr^-1].
+    IrradianceCache(std::vector<IrradianceRecord> records, std::vector<float> radiance,
                     std::size_t values);
     ~IrradianceCache();
     IrradianceCache(const IrradianceCache&) = delete;
@@ -31,20 +31,22 @@ class IrradianceCache {
     IrradianceCache(IrradianceCache&&) noexcept;
     IrradianceCache& operator=(IrradianceCache&&) noexcept;
 
-    /// How many values each point has.
+    /// The number of values of each record.
     std::size_t values() const { return values_; }
-    /// Sets `radiance` to the values at a surface, or to 0 where no point is known. Adds nothing
-    /// from points on the other side of a thin wall.
+    /// Interpolates at a surface; 0 where no record applies. Records on the other side of a thin
+    /// wall contribute nothing.
     void find(const SurfaceHit& hit, std::span<double> radiance) const;
-    /// Whether a point that faces the same way lies within `radius` [m] of the hit.
+    /// Whether a record that faces the same way lies within `radius` [m] of the hit.
     bool covers(const SurfaceHit& hit, double radius) const;
 
   private:
     class Tree;
     struct Near;
 
-    // What each of the points counts; false if none of them tells of the hit.
-    bool find_shares(const SurfaceHit& hit, const Near& near, std::span<double> shares) const;
+    // The coefficients of the records in the interpolated value, which add up to 1; false if no
+    // record applies to the hit.
+    bool find_coefficients(const SurfaceHit& hit, const Near& near,
+                           std::span<double> coefficients) const;
 
     std::unique_ptr<const Tree> tree_;
     std::vector<float> radiance_;

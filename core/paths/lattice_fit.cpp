@@ -40,22 +40,22 @@ void CholeskyFactor::solve(std::span<double> x) const {
 namespace {
 
 constexpr int k_max_terms = 6;  // 1, x, y, x^2, xy, y^2
-constexpr std::array<int, 5> k_reaches{0, 1, 2, 4, LatticeFit::k_reach};
-// In units of a narrower fit's standard deviation: a wider fit that differs by more follows the
-// light less well.
+constexpr std::array<int, 5> k_fit_radii{0, 1, 2, 4, LatticeFit::k_max_radius};
+// A wider fit is rejected if it differs from a narrower one by more than so many standard
+// deviations of that.
 constexpr double k_agreement = 4;
-// Noise that need not be smoothed any further, relative to differences that do not matter.
+// A fit is not widened further if its standard deviation is below this, relative to the tolerance.
 constexpr double k_quiet = 0.5;
-// The least pivot of normal equations, relative to the largest.
+// The minimum pivot of the normal equations, relative to the diagonal.
 constexpr double k_min_pivot = 1e-6;
 
 using Terms = std::array<double, k_max_terms>;
 
-// Calls visit(node, weight, terms) for the nodes nearer than reach + 1, with a weight that falls to
-// 0 there, and terms of x and y in units of it.
+// Calls visit(node, weight, terms) for the nodes nearer than radius + 1. The weight falls to 0
+// there; x and y in the terms are in units of it.
 template <class Visit>
-void visit_near(std::span<const FitNode> nodes, int reach, const Visit& visit) {
-    const double scale = 1.0 / (reach + 1);
+void visit_near(std::span<const FitNode> nodes, int radius, const Visit& visit) {
+    const double scale = 1.0 / (radius + 1);
     for (const FitNode& node : nodes) {
         const double x = node.dx * scale, y = node.dy * scale;
         const double near = 1 - x * x - y * y;
@@ -67,27 +67,27 @@ void visit_near(std::span<const FitNode> nodes, int reach, const Visit& visit) {
 }  // namespace
 
 template <std::size_t k_terms>
-bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach) {
-    // Local and of a fixed size, so that it stays in registers.
+bool LatticeFit::fit_within(std::span<const FitNode> nodes, int radius) {
+    // Local and of a fixed size, so that the compiler keeps it in registers.
     std::array<double, k_terms * k_terms> normal{};
     std::size_t used = 0;
-    visit_near(nodes, reach, [&](const FitNode&, double rest, const Terms& t) {
+    visit_near(nodes, radius, [&](const FitNode&, double kernel, const Terms& t) {
         ++used;
         for (std::size_t i = 0; i < k_terms; ++i) {
-            const double weighted = rest * t[i];
+            const double weighted = kernel * t[i];
             for (std::size_t j = 0; j <= i; ++j) normal[i * k_terms + j] += weighted * t[j];
         }
     });
     if (used + 1 < 2 * k_terms || !cholesky_.factor(normal, k_terms, k_min_pivot)) return false;
-    Terms solution{1};  // of which the first term is the value at (0, 0)
+    Terms solution{1};  // whose first term is the value at (0, 0)
     cholesky_.solve(std::span(solution).first(k_terms));
     tried_.resize(used);
     double value = 0, variance = 0, amplification = 0;
     std::size_t n = 0;
-    visit_near(nodes, reach, [&](const FitNode& node, double rest, const Terms& t) {
+    visit_near(nodes, radius, [&](const FitNode& node, double kernel, const Terms& t) {
         double weight = 0;
         for (std::size_t i = 0; i < k_terms; ++i) weight += solution[i] * t[i];
-        weight *= rest;
+        weight *= kernel;
         tried_[n++] = {node.index, weight};
         value += weight * node.value;
         variance += weight * weight * node.variance;
@@ -95,7 +95,7 @@ bool LatticeFit::fit_within(std::span<const FitNode> nodes, int reach) {
     });
     tried_value_ = value;
     tried_variance_ = variance;
-    // An extrapolation that makes noise greater is left to a lower degree.
+    // Rejects an extrapolation that amplifies noise, in favour of a lower degree.
     return k_terms == 1 || amplification <= 1;
 }
 
@@ -106,12 +106,12 @@ std::span<const FitWeight> LatticeFit::fit(std::span<const FitNode> nodes, doubl
     struct Accepted {
         double value, deviation;
     };
-    std::array<Accepted, k_reaches.size()> accepted{};
+    std::array<Accepted, k_fit_radii.size()> accepted{};
     std::size_t count = 0;
-    for (const int reach : k_reaches) {
+    for (const int radius : k_fit_radii) {
         // The polynomial has the highest degree that the nodes determine.
-        if (!(reach >= 2 && fit_within<6>(nodes, reach)) && !fit_within<3>(nodes, reach) &&
-            !fit_within<1>(nodes, reach))
+        if (!(radius >= 2 && fit_within<6>(nodes, radius)) && !fit_within<3>(nodes, radius) &&
+            !fit_within<1>(nodes, radius))
             continue;
         const bool agrees =
             std::all_of(accepted.begin(), accepted.begin() + static_cast<std::ptrdiff_t>(count),

@@ -52,7 +52,7 @@ void NodeLattice::for_each(const NodeWindow& window, const ShareCallback& progre
 
 namespace {
 
-constexpr double k_share_of_seen = 0.85;  // of the time
+constexpr double k_visible_fraction = 0.85;  // of the time
 
 void append(const NodeRadiance& light, std::vector<float>& radiance) {
     radiance.insert(radiance.end(), light.diffuse.begin(), light.diffuse.end());
@@ -62,7 +62,7 @@ void append(const NodeRadiance& light, std::vector<float>& radiance) {
 
 IrradianceCache NodeLattice::light_surfaces(const NodePaths& paths, const ShareCallback& progress) {
     for_each(
-        all(), [&](double share) { progress(k_share_of_seen * share); },
+        all(), [&](double fraction) { progress(k_visible_fraction * fraction); },
         [&](int i, int j) { estimator_.estimate_surface(place(i, j), paths, raw_(i, j)); });
     smooth_ = smoothed_surfaces(raw_, estimator_.groups(), estimator_.bands());
     const std::size_t values = estimator_.groups() * estimator_.bands();
@@ -80,8 +80,8 @@ IrradianceCache NodeLattice::light_surfaces(const NodePaths& paths, const ShareC
     parallel_for(unseen.size(), [&](std::size_t at) {
         thread_local SurfaceErrors errors;
         estimator_.estimate_surface(unseen[at], paths.surface, lights[at], errors);
-        progress(k_share_of_seen + (1 - k_share_of_seen) * static_cast<double>(++done) /
-                                       static_cast<double>(unseen.size()));
+        progress(k_visible_fraction + (1 - k_visible_fraction) * static_cast<double>(++done) /
+                                          static_cast<double>(unseen.size()));
     });
     for (std::size_t at = 0; at < unseen.size(); ++at) {
         points.push_back({unseen[at].hit.position, unseen[at].hit.normal});
@@ -90,18 +90,18 @@ IrradianceCache NodeLattice::light_surfaces(const NodePaths& paths, const ShareC
     return {std::move(points), std::move(radiance), values};
 }
 
-// A few paths from some of the nodes tell where. Where they meet a surface, and no point is near
-// that tells of it, there will be one.
-std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IrradianceCache& seen) const {
+// Traces a few paths from some of the nodes. Where they meet a surface on which no nearby record
+// applies, a record is added.
+std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IrradianceCache& visible) const {
     constexpr int k_step = 3, k_paths = 4;
-    constexpr double k_near = 0.1;   // relative to the distance from the camera
-    constexpr double k_alike = 0.7;  // cosine between the normals
-    constexpr std::size_t k_most = 3000;
+    constexpr double k_max_spacing = 0.1;            // relative to the distance from the camera
+    constexpr double k_min_cosine_of_normals = 0.7;  // cosine between normals that count as alike
+    constexpr std::size_t k_max_surfaces = 3000;
     const int columns = (raw_.width() + k_step - 1) / k_step;
     const int rows = (raw_.height() + k_step - 1) / k_step;
     struct Found {
         SurfaceSample sample;
-        double reach;  // of what it tells about [m]
+        double radius;  // of the surroundings that it represents [m]
     };
     Grid2D<std::vector<Found>> found(columns, rows);
     parallel_for(found.size(), [&](std::size_t at) {
@@ -110,8 +110,8 @@ std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IrradianceCac
             place(static_cast<int>(at) % columns * k_step, static_cast<int>(at) / columns * k_step);
         const Point3 camera = estimator_.find_lit_surfaces(from, k_paths, samples);
         for (const SurfaceSample& sample : samples) {
-            const double reach = k_near * glm::length(sample.hit.position - camera);
-            if (!seen.covers(sample.hit, reach)) found[at].push_back({sample, reach});
+            const double radius = k_max_spacing * glm::length(sample.hit.position - camera);
+            if (!visible.covers(sample.hit, radius)) found[at].push_back({sample, radius});
         }
     });
     std::vector<SurfaceSample> unseen;
@@ -119,12 +119,12 @@ std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IrradianceCac
         for (const Found& candidate : of_node) {
             const SurfaceHit& hit = candidate.sample.hit;
             const bool is_known = std::ranges::any_of(unseen, [&](const SurfaceSample& other) {
-                return glm::length(other.hit.position - hit.position) < candidate.reach &&
-                       glm::dot(other.hit.normal, hit.normal) > k_alike;
+                return glm::length(other.hit.position - hit.position) < candidate.radius &&
+                       glm::dot(other.hit.normal, hit.normal) > k_min_cosine_of_normals;
             });
-            if (is_known || unseen.size() == k_most) continue;
+            if (is_known || unseen.size() == k_max_surfaces) continue;
             unseen.push_back(candidate.sample);
-            // Its random numbers depend on its place in the list.
+            // The random numbers of its estimate depend on its index.
             unseen.back().x = static_cast<double>(unseen.size());
             unseen.back().y = -1;
         }
@@ -165,32 +165,32 @@ double typical_diffuse(const Grid2D<RadianceNode>& nodes) {
     return surfaces > 0 ? sum / surfaces : 0;
 }
 
-// What the water shows of the surfaces around a node, by the indirect light on them. Much of what
-// it shows in front of a dark one comes from elsewhere: the light is divided by what is typical, if
-// that is more than the node's own.
+// The part of the water's light that comes from the surfaces around a node, per indirect light on
+// them. In front of a dark surface much of it comes from elsewhere: the divisor is the typical
+// indirect light, if that is greater than the node's own.
 double halo_of_diffuse(double lit_indirect, double diffuse, double typical) {
-    constexpr double k_left = 0.5;  // of the noise by blurring
+    constexpr double k_remaining_noise = 0.5;  // fraction that the blur leaves
     const double of_surfaces = std::max(diffuse, typical);
-    return of_surfaces > 0 ? k_left * lit_indirect / of_surfaces : 0;
+    return of_surfaces > 0 ? k_remaining_noise * lit_indirect / of_surfaces : 0;
 }
 
-// The camera's radiance per indirect light on a node's surface: of the surface itself, and of what
-// water shows of the surfaces around it, on which light is as noisy.
-double light_of_diffuse(const RadianceNode& node, double typical) {
+// The camera's radiance per indirect light on a node's surface: that of the surface itself, and of
+// the halo of the surfaces around it, whose indirect light is as noisy.
+double throughput_of_diffuse(const RadianceNode& node, double typical) {
     double lit = 0;
     for (const float light : node.lit_indirect)
         lit += static_cast<double>(light) / static_cast<double>(node.lit_indirect.size());
-    return node.surface_seen + halo_of_diffuse(lit, diffuse_of(node), typical);
+    return node.surface_throughput + halo_of_diffuse(lit, diffuse_of(node), typical);
 }
 
-// The indirect light that either half of a node finds on its surface, by band.
+// Adds the indirect light on the node's surface, the mean of both halves, by band.
 void add_diffuse(const RadianceNode& node, std::span<double> diffuse) {
     for (const NodeRadiance& half : node.halves)
         for (std::size_t k = 0; k < half.diffuse.size(); ++k)
             diffuse[k % diffuse.size()] += 0.5 * static_cast<double>(half.diffuse[k]);
 }
 
-/// By band, sums over some nodes of the squares of errors, and of what these are relative to.
+/// Sums over some nodes, by band: of squared errors, and of the squares that these are relative to.
 struct ErrorSquares {
     std::vector<double> variances, shifts, noise, squares;
 
@@ -198,7 +198,7 @@ struct ErrorSquares {
         for (std::vector<double>* sums : {&variances, &shifts, &noise, &squares})
             sums->assign(bands, 0.0);
     }
-    /// `shift`: of either half, or of none.
+    /// `shift`: of both halves; may be empty.
     void add(std::span<const float> variance, const std::array<std::vector<float>, 2>& shift) {
         for (std::size_t b = 0; b < variance.size(); ++b) {
             variances[b] += static_cast<double>(variance[b]);
@@ -211,9 +211,9 @@ struct ErrorSquares {
     void add_squares_of(double value) {
         for (double& sum : squares) sum += value * value;
     }
-    // The product of the shifts is the square of what is alike in both halves, and of noise, which
-    // is of either sign: half the variance of a half's shift, as some four of the nodes around are
-    // independent.
+    // The product of the shifts estimates the squared bias, which both halves have in common. Its
+    // noise is of either sign, and about half the variance of one half's shift, as some four of the
+    // nodes around are independent.
     void store(std::vector<float>& errors) const {
         constexpr double k_noise_of_product = 0.5;
         errors.assign(variances.size(), 0.0F);
@@ -246,10 +246,10 @@ void NodeLattice::find_errors(const NodeWindow& window, Grid2D<SmoothNode>& node
         thread_local std::vector<double> weights, diffuse;
         thread_local ErrorSquares water, of_diffuse, of_glossy, around;
         for (ErrorSquares* sums : {&water, &of_diffuse, &of_glossy, &around}) sums->begin(bands);
-        for (int v = std::max(window.j0, j - k_variance_reach);
-             v <= std::min(window.j1 - 1, j + k_variance_reach); ++v) {
-            for (int u = std::max(window.i0, i - k_variance_reach);
-                 u <= std::min(window.i1 - 1, i + k_variance_reach); ++u) {
+        for (int v = std::max(window.j0, j - k_variance_radius);
+             v <= std::min(window.j1 - 1, j + k_variance_radius); ++v) {
+            for (int u = std::max(window.i0, i - k_variance_radius);
+                 u <= std::min(window.i1 - 1, i + k_variance_radius); ++u) {
                 const SmoothNode& other = nodes(u, v);
                 weights.assign(bands, 0.0);
                 const std::vector<float>& of_other = raw_(u, v).weights;
@@ -284,29 +284,31 @@ void NodeLattice::find_errors(const NodeWindow& window, Grid2D<SmoothNode>& node
 
 namespace {
 
-// The paths of each kind at a node: more would leave less noise than there is light between the
-// nodes of a small image.
-constexpr double k_fewest_node_paths = 8, k_max_node_paths = 4096;
-// What smoothing leaves of the variance of nodes, in the example scenes: 0.02 to 0.05, in plumes
-// more, and how much more it is of that on surfaces, where fewer nodes see the same.
+// Bounds for the numbers of paths of each kind at a node. More paths would leave less noise than
+// the light varies between the nodes of a small image.
+constexpr double k_min_node_paths = 8, k_max_node_paths = 4096;
+// The variance that remains after smoothing, as measured in the example scenes: 0.02 to 0.05, more
+// in plumes; and the factor by which more of it remains on surfaces, where fewer nodes see the
+// same.
 constexpr double k_smoothed_variance = 0.03, k_more_on_surfaces = 2.5;
-// The work of each node and each path that the effort names.
+// The work of each node and each path in units of the effort.
 constexpr double k_work_of_effort = 6;
 constexpr double k_min_cost = 0.05;
 
 }  // namespace
 
-// Numbers in proportion to the deviation of a path over the root of its cost leave the least error.
+// Numbers of paths in proportion to standard deviation / sqrt(cost) minimise the error.
 NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effort) {
-    constexpr int k_paths = 64, k_fewest_across = 5, k_max_across = 16;
-    constexpr double k_share = 0.05;  // of the paths
-    const int across = std::clamp(static_cast<int>(std::sqrt(k_share * effort.paths / k_paths)),
-                                  k_fewest_across, k_max_across);
+    constexpr int k_paths = 64, k_min_across = 5, k_max_across = 16;
+    constexpr double k_pilot_fraction = 0.05;  // of the paths
+    const int across =
+        std::clamp(static_cast<int>(std::sqrt(k_pilot_fraction * effort.paths / k_paths)),
+                   k_min_across, k_max_across);
     NodeLattice pilot(estimator, NodeLattice::Positions::amid(estimator.rays(), across));
     const NodePaths few{k_paths, k_paths, k_paths};
-    const ShareCallback untold = [](double) {};
-    const IrradianceCache indirect = pilot.light_surfaces(few, untold);
-    pilot.light_water(pilot.all(), few, indirect, untold);
+    const ShareCallback no_progress = [](double) {};
+    const IrradianceCache indirect = pilot.light_surfaces(few, no_progress);
+    pilot.light_water(pilot.all(), few, indirect, no_progress);
     NodePaths paths;
     const auto count = static_cast<double>(pilot.all().size());
     for (const RadianceNode& node : pilot.raw()) {
@@ -315,46 +317,47 @@ NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effor
     }
     const double typical = typical_diffuse(pilot.raw());
     double light = 0;
-    double of_surface = 0, of_lit = 0, of_water = 0;  // variances of a path
+    double of_surface = 0, of_lit = 0, of_water = 0;  // variances of a single path
     struct {
         double surface, lit, water;
-    } cost{0, 0, 0};  // of all paths of a kind
+    } cost{0, 0, 0};  // of the paths of each kind
     for (const RadianceNode& node : pilot.raw()) {
-        const double share = paths.water_share(node), of_its_surface = paths.surface_share(node);
+        const double water_scale = paths.water_scale(node),
+                     surface_scale = paths.surface_scale(node);
         light += node.mean_light;
-        of_lit += node.lit.variance / share;
-        of_water += node.water.variance / share;
-        cost.lit += share * node.lit.work;
-        cost.water += share * node.water.work;
-        cost.surface += of_its_surface * node.surface_work;
+        of_lit += node.lit.variance / water_scale;
+        of_water += node.water.variance / water_scale;
+        cost.lit += water_scale * node.lit.work;
+        cost.water += water_scale * node.water.work;
+        cost.surface += surface_scale * node.surface_work;
         if (!node.surface) continue;
-        // That of either half's mean was of half the paths.
+        // Each half's mean is over half the paths.
         const double of_halves =
             0.5 * (node.halves[0].diffuse_variance + node.halves[1].diffuse_variance);
-        const double variance = of_halves * k_paths / 2 / of_its_surface;
-        const double seen = light_of_diffuse(node, typical);
-        of_surface += k_more_on_surfaces * variance * seen * seen;
+        const double variance = of_halves * k_paths / 2 / surface_scale;
+        const double throughput = throughput_of_diffuse(node, typical);
+        of_surface += k_more_on_surfaces * variance * throughput * throughput;
     }
     for (double* of_kind : {&cost.surface, &cost.lit, &cost.water})
         *of_kind = std::max(*of_kind / count, k_min_cost);
     const double surface = std::sqrt(of_surface / cost.surface);
-    const double seen = std::sqrt(of_lit / cost.lit), water = std::sqrt(of_water / cost.water);
-    const double work = surface * cost.surface + seen * cost.lit + water * cost.water;
+    const double lit = std::sqrt(of_lit / cost.lit), water = std::sqrt(of_water / cost.water);
+    const double work = surface * cost.surface + lit * cost.lit + water * cost.water;
     double scale = work > 0 ? k_work_of_effort * effort.paths / effort.nodes / work : 0;
     if (work > 0 && effort.error > 0) {
         const double error = effort.error * light / count;
         scale = std::min(scale, k_smoothed_variance * work / count / (error * error));
     }
     const auto number = [&](double of_kind) {
-        return static_cast<int>(std::clamp(scale * of_kind, k_fewest_node_paths, k_max_node_paths));
+        return static_cast<int>(std::clamp(scale * of_kind, k_min_node_paths, k_max_node_paths));
     };
-    // The few that find water close to a lamp are bright, and rare: some show as spots.
-    constexpr double k_fewest_in_water = 8;
-    const int fewest_water =
-        static_cast<int>(std::min(k_fewest_in_water, effort.paths / effort.nodes));
+    // The few paths that meet water close to a lamp are bright, and too few of them leave spots.
+    constexpr double k_min_in_water = 8;
+    const int min_water_paths =
+        static_cast<int>(std::min(k_min_in_water, effort.paths / effort.nodes));
     paths.surface = number(surface);
-    paths.lit = number(seen);
-    paths.water = std::max(number(water), fewest_water);
+    paths.lit = number(lit);
+    paths.water = std::max(number(water), min_water_paths);
     return paths;
 }
 

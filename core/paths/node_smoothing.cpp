@@ -19,14 +19,14 @@ namespace {
 
 // Differences between fits that do not matter, relative to the light of the nodes around.
 constexpr double k_tolerance = 1e-3;
-// The mean of the halves' sums: of a square of the halves' difference, twice the variance of
-// either, it has this much per square of a weight in either sum.
+// The mean of the two halves: its variance per squared weight, from the squared difference of the
+// halves, which is twice the variance of either.
 constexpr double k_variance_of_mean = 0.125;
 
-/// The nodes around one that take part in a fit.
+/// The nodes around a node that take part in its fit.
 class Neighbourhood {
   public:
-    /// `of(index)` is a node's FitNode without its place, or empty if it takes no part.
+    /// `of(index)` returns a node's FitNode without its offset, or nullopt if it takes no part.
     template <class Of>
     void find(const Grid2D<RadianceNode>& raw, int i, int j, const Of& of) {
         nodes_.clear();
@@ -50,25 +50,26 @@ class Neighbourhood {
     }
 
     std::span<const FitNode> nodes() const { return nodes_; }
-    /// The mean of their light.
+    /// The mean light of the nodes.
     double light() const { return light_; }
-    /// The mean of their weights.
+    /// The mean weight of the nodes.
     double weight() const { return weight_; }
 
   private:
     struct Step {
         int dx, dy;
     };
-    // Those that LatticeFit takes nodes from, the nearest first.
+    // The offsets within LatticeFit's radius, the nearest first.
     static const std::vector<Step>& steps_by_distance() {
         static const std::vector<Step> steps = [] {
-            constexpr int k_reach = LatticeFit::k_reach, k_beyond = (k_reach + 1) * (k_reach + 1);
+            constexpr int k_max_radius = LatticeFit::k_max_radius,
+                          k_beyond = (k_max_radius + 1) * (k_max_radius + 1);
             const auto square = [](const Step& step) {
                 return step.dx * step.dx + step.dy * step.dy;
             };
             std::vector<Step> all;
-            for (int dy = -k_reach; dy <= k_reach; ++dy)
-                for (int dx = -k_reach; dx <= k_reach; ++dx)
+            for (int dy = -k_max_radius; dy <= k_max_radius; ++dy)
+                for (int dx = -k_max_radius; dx <= k_max_radius; ++dx)
                     if (square({dx, dy}) < k_beyond) all.push_back({dx, dy});
             std::ranges::stable_sort(all, std::less(), square);
             return all;
@@ -80,14 +81,14 @@ class Neighbourhood {
     double light_ = 0, weight_ = 0;
 };
 
-// The mean of what `of` finds in the nodes around each: the variance of a few batches says little
-// by itself, and that of a whole neighbourhood would hide features of its dark parts.
+// Visits the nodes around one, to average their variances: that of a few batches is noisy, and that
+// of a whole neighbourhood would hide features of its dark parts.
 template <class Of>
 void average_around(const Grid2D<RadianceNode>& raw, std::size_t at, const Of& of) {
-    constexpr int k_reach = k_variance_reach;
+    constexpr int k_radius = k_variance_radius;
     const int i = static_cast<int>(at) % raw.width(), j = static_cast<int>(at) / raw.width();
-    for (int v = std::max(0, j - k_reach); v <= std::min(raw.height() - 1, j + k_reach); ++v)
-        for (int u = std::max(0, i - k_reach); u <= std::min(raw.width() - 1, i + k_reach); ++u)
+    for (int v = std::max(0, j - k_radius); v <= std::min(raw.height() - 1, j + k_radius); ++v)
+        for (int u = std::max(0, i - k_radius); u <= std::min(raw.width() - 1, i + k_radius); ++u)
             of(raw(u, v));
 }
 
@@ -98,16 +99,16 @@ void average_surface_variances(const Grid2D<RadianceNode>& raw, Grid2D<RadianceN
             average_around(raw, at, [&](const RadianceNode& other) {
                 if (!other.surface) return;
                 ++surfaces;
-                sum += other.surface_share * other.halves[half].diffuse_variance;
+                sum += other.surface_scale * other.halves[half].diffuse_variance;
             });
             nodes[at].halves[half].diffuse_variance =
-                sum / (std::max(surfaces, 1.0) * raw[at].surface_share);
+                sum / (std::max(surfaces, 1.0) * raw[at].surface_scale);
         }
     });
 }
 
-// The water's is in proportion to the weights of its intervals, as that of counts to their
-// expectation, and inverse to the shares of paths.
+// The variance of the water's light is assumed in proportion to the weights of its intervals, as
+// that of Poisson counts to their expectation, and inverse to the numbers of paths.
 void average_water_variances(const Grid2D<RadianceNode>& raw, Grid2D<RadianceNode>& nodes) {
     parallel_for(raw.size(), [&](std::size_t at) {
         thread_local std::vector<double> variances, weights;
@@ -119,21 +120,21 @@ void average_water_variances(const Grid2D<RadianceNode>& raw, Grid2D<RadianceNod
                 const std::vector<float>& of_other = other.halves[half].water_variance;
                 if (of_other.empty()) return;
                 for (std::size_t k = 0; k < variances.size(); ++k) {
-                    variances[k] += other.water_share * static_cast<double>(of_other[k]);
+                    variances[k] += other.water_scale * static_cast<double>(of_other[k]);
                     weights[k] += static_cast<double>(other.mean_weights[k]);
                 }
             });
             for (std::size_t k = 0; k < of_node.size(); ++k)
                 of_node[k] =
                     weights[k] > 0
-                        ? static_cast<float>(variances[k] / (weights[k] * raw[at].water_share) *
+                        ? static_cast<float>(variances[k] / (weights[k] * raw[at].water_scale) *
                                              static_cast<double>(nodes[at].mean_weights[k]))
                         : 0.0F;
         }
     });
 }
 
-// By band, the squares of the differences between the halves, summed over the groups.
+// Adds the squared differences between the halves, by band, summed over the groups.
 void add_squares(std::span<const float> a, std::span<const float> b, std::span<float> squares) {
     for (std::size_t band = 0; band < squares.size(); ++band) {
         float difference = 0;
@@ -142,13 +143,13 @@ void add_squares(std::span<const float> a, std::span<const float> b, std::span<f
     }
 }
 
-/// What the nodes tell of the water's light in one interval.
+/// The light of the water in one interval, at all nodes.
 struct IntervalOfNodes {
     std::vector<NodeReach> reach;
-    std::vector<float> weights;  // 0: they scatter no light
-    // By half of the estimates, the light divided by the weight, and its variance.
+    std::vector<float> weights;  // 0: the node's ray scatters no light there
+    // By half of the estimates: the light divided by the weight, and its variance.
     std::array<std::vector<float>, 2> of_half, variances;
-    std::vector<float> squares;  // of the difference between the halves, divided as well, by band
+    std::vector<float> squares;  // of the halves' difference over the weight, by band
 
     IntervalOfNodes(const Grid2D<RadianceNode>& nodes, const DistanceIntervals& intervals,
                     std::size_t interval, std::size_t groups, std::size_t bands)
@@ -157,7 +158,7 @@ struct IntervalOfNodes {
           of_half{weights, weights},
           variances{weights, weights},
           squares(nodes.size() * bands) {
-        // Less is not told from nothing by numbers of this precision.
+        // Smaller weights are lost to the precision of float.
         constexpr float k_min_weight = 1e-30F;
         const std::size_t values = groups * bands;
         for (std::size_t n = 0; n < nodes.size(); ++n) {
@@ -189,7 +190,7 @@ class NodeSmoothing {
     NodeSmoothing(const Grid2D<RadianceNode>& raw, std::size_t groups, std::size_t bands)
         : raw_(raw), bands_(bands), values_(groups * bands) {}
 
-    /// Adds an interval to a node; false if no node around it reaches so far.
+    /// Smooths an interval of a node; returns false if no node around it reaches that far.
     bool smooth_water(const IntervalOfNodes& of_nodes, std::size_t interval, int i, int j,
                       SmoothNode& node) const;
     void smooth_surface(int i, int j, SmoothNode& node) const;
@@ -206,9 +207,9 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
     const RadianceNode& own = raw_(i, j);
     for (std::size_t half = 0; half < 2; ++half) {
         bool is_reached = false;
-        const auto find = [&](NodeReach least) {
+        const auto find = [&](NodeReach min_reach) {
             near.find(raw_, i, j, [&](std::size_t other) -> std::optional<FitNode> {
-                if (of_nodes.reach[other] < least) return std::nullopt;
+                if (of_nodes.reach[other] < min_reach) return std::nullopt;
                 is_reached = true;
                 if (!(of_nodes.weights[other] > 0)) return std::nullopt;
                 FitNode of;
@@ -222,9 +223,11 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
         if (near.nodes().empty()) find(NodeReach::little);
         // Water that scatters nothing is known to be dark.
         if (near.nodes().empty()) return is_reached;
-        // As much as the node's ray shows of it: nothing behind its surface.
-        const double shown = own.has_ray ? static_cast<double>(own.mean_weights[interval]) : 0.0;
-        const double tolerance = k_tolerance * near.light() / std::max(shown, 1e-3 * near.weight());
+        // Weighted as on the node's ray, which shows nothing behind its surface.
+        const double visible_weight =
+            own.has_ray ? static_cast<double>(own.mean_weights[interval]) : 0.0;
+        const double tolerance =
+            k_tolerance * near.light() / std::max(visible_weight, 1e-3 * near.weight());
         const std::span<const FitWeight> weights = fit.fit(near.nodes(), tolerance);
         for (const FitWeight& weight : weights) {
             const RadianceNode& other = raw_[weight.index];
@@ -285,7 +288,8 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
             of.variance = other.halves[1 - half].diffuse_variance;
             return of;
         });
-        const double tolerance = k_tolerance * near.light() / std::max(own.surface_seen, 1e-3);
+        const double tolerance =
+            k_tolerance * near.light() / std::max(own.surface_throughput, 1e-3);
         const std::span<const FitWeight> weights = fit.fit(near.nodes(), tolerance);
         for (const FitWeight& weight : weights) {
             const RadianceNode& other = raw_[weight.index];
@@ -320,7 +324,7 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
 
 }  // namespace
 
-// Nodes as they were estimated, with their variances averaged, and smoothed.
+// Counts the nodes as estimated, a copy with averaged variances, and the smoothed nodes.
 void require_room_for_nodes(std::size_t nodes, std::size_t intervals, std::size_t groups,
                             const LitScene& scene) {
     const auto bands = static_cast<std::size_t>(scene.medium->band_count());
@@ -368,7 +372,7 @@ void smooth_water(const Grid2D<RadianceNode>& raw, const NodeWindow& window,
     });
     for (std::size_t interval = 0; interval < intervals.count(); ++interval) {
         const IntervalOfNodes of_nodes(averaged, intervals, interval, groups, bands);
-        // Nothing is known of what lies behind an interval that no node reaches.
+        // What lies behind an interval that no node reaches is unknown.
         const double before = interval == 0 ? 0 : intervals.end(interval - 1);
         for_each([&](int i, int j) {
             SmoothNode& node = nodes(i, j);

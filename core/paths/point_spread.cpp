@@ -12,28 +12,28 @@ namespace uw {
 
 namespace {
 
-constexpr double k_widest_scattering = 1;  // that can form an image [rad]
-// Optical depths of scattering between which surfaces are left out, little by little: their own
-// light is too faint to tell what there is of it.
+constexpr double k_max_angle = 1;  // of scattering that can form an image [rad]
+// Optical depths of scattering between which surfaces fade out: beyond, their unscattered light is
+// too faint to scale from.
 constexpr double k_full_depth = 8, k_max_depth = 12;
-constexpr int k_distances_of_interval = 2;  // in the table
-// Below the least frequency all is even.
+constexpr int k_distances_of_interval = 2;  // nodes of the table per interval
+// Below this frequency the transfer function is constant.
 constexpr double k_min_frequency = 0.0875;  // [1/rad]
 constexpr double k_frequency_step = 0.25;   // [octaves]
 
 using Exponents = std::array<double, PointSpread::k_frequencies>;
 
 /// The Hankel transform of a phase function, 2 pi int p(psi) J0(k psi) psi dpsi over small angles,
-/// from that of functions which are constant on steps of the angle.
+/// with p constant on each of many steps of the angle.
 class PhaseTransfer {
   public:
     explicit PhaseTransfer(const PhaseFunction& phase) {
         constexpr int k_steps = 240;
-        constexpr double k_narrowest = 1e-6;  // below which phase functions are linear in psi^2
-        const double growth = std::pow(k_widest_scattering / k_narrowest, 1.0 / k_steps);
-        double begin = 0, end = k_narrowest;
+        constexpr double k_min_angle = 1e-6;  // below it p is linear in psi^2
+        const double growth = std::pow(k_max_angle / k_min_angle, 1.0 / k_steps);
+        double begin = 0, end = k_min_angle;
         for (int step = 0; step <= k_steps; ++step) {
-            // Where p is linear in psi^2, its mean over the solid angle is halfway in that.
+            // Where p is linear in psi^2, its mean over the solid angle is at half of psi^2.
             const double middle = step == 0 ? std::sqrt(0.5) * end : 0.5 * (begin + end);
             const double p = phase.evaluate(middle);
             for (std::size_t i = 0; i < values_.size(); ++i) {
@@ -99,14 +99,14 @@ PointSpread::PointSpread(const Medium& medium, const DistanceIntervals& interval
                 Transfer& transfer = transfers_[(interval * bands_ + b) * distances_.size() + d];
                 const double depth = medium.uniform.total_scattering()[b] * distance;
                 if (depth >= k_max_depth) continue;
-                const double share =
+                const double fade =
                     std::min(1.0, (k_max_depth - depth) / (k_max_depth - k_full_depth));
                 for (std::size_t i = 0; i < k_frequencies; ++i) {
                     double exponent = 0;
                     for (std::size_t m = 0; m < phases.size(); ++m)
                         exponent += medium.uniform.scattering[m][b] * lengths[m][i];
                     transfer[i] =
-                        static_cast<float>(share * std::expm1(exponent) * std::exp(behind[b][i]));
+                        static_cast<float>(fade * std::expm1(exponent) * std::exp(behind[b][i]));
                     behind[b][i] += exponent;
                 }
             }
@@ -120,7 +120,8 @@ int halved(int size) {
     return (size + 1) / 2;
 }
 
-// 1/8 (1 3 3 1) around the middle of pixels 2 i and 2 i + 1, along x and then along y.
+// Reduces by the kernel 1/8 (1 3 3 1) around the centre of pixels 2 i and 2 i + 1, along x and then
+// along y.
 void reduce(const Grid2D<float>& fine, Grid2D<float>& rows, Grid2D<float>& coarse) {
     const int width = fine.width(), height = fine.height();
     rows.resize(halved(width), height);
@@ -154,8 +155,8 @@ void reduce(const Grid2D<float>& fine, Grid2D<float>& rows, Grid2D<float>& coars
     }
 }
 
-// 1/4 (1 2 1), which leaves nothing of what the pixels of the level cannot tell from slower
-// changes, along x and then along y.
+// Smooths by the kernel 1/4 (1 2 1), whose transfer function is 0 at the Nyquist frequency, along x
+// and then along y.
 void smooth(Grid2D<float>& image, Grid2D<float>& rows) {
     const int width = image.width(), height = image.height();
     rows.resize(width, height);
@@ -173,7 +174,7 @@ void smooth(Grid2D<float>& image, Grid2D<float>& rows) {
     }
 }
 
-// Linear interpolation, along y and then along x.
+// Expands by linear interpolation, along y and then along x.
 void add_expanded(const Grid2D<float>& coarse, Grid2D<float>& rows, Grid2D<float>& fine) {
     const int height = fine.height();
     rows.resize(coarse.width(), 1);
@@ -195,14 +196,15 @@ void add_expanded(const Grid2D<float>& coarse, Grid2D<float>& rows, Grid2D<float
 
 }  // namespace
 
-// Each step down and each step up adds 1/4 of the squared pixel of the finer image and 1/2 that of
-// its own, smoothing 1/2 of the squared pixel of the level.
+// Each reduction and each expansion adds 1/4 squared pixel of the finer image and 1/2 of its own to
+// the variance; smoothing adds 1/2 squared pixel of the level.
 double BlurPyramid::deviation(int level) {
     return level == 0 ? 0 : std::sqrt(std::exp2(2 * (level - 1)) - 0.5);
 }
 
-// Each step down and each step up is cos(w / 2)^3 at its own w, which doubles from step to step,
-// and smoothing cos(w / 2)^2: cos x cos 2x … cos 2^(n-1) x = sin(2^n x) / (2^n sin x).
+// Each reduction and each expansion has the transfer function cos(w / 2)^3 at its own w, which
+// doubles from step to step, and smoothing cos(w / 2)^2. Their product follows from
+//     cos x cos 2x … cos 2^(n-1) x = sin(2^n x) / (2^n sin x).
 double BlurPyramid::transfer(int level, double omega) {
     if (level == 0) return 1;
     const double x = 0.5 * omega, wide = std::exp2(level - 1), sine = wide * std::sin(x);
@@ -243,7 +245,7 @@ const Grid2D<float>& BlurPyramid::sum() {
 
 namespace {
 
-// Against weights that grow by cancelling one another.
+// Tikhonov regularisation, against large weights that cancel one another.
 constexpr double k_ridge = 1e-4;
 
 // The transfer function of a mean over pixels that is taken twice.
@@ -258,9 +260,9 @@ BlurFit::BlurFit(int levels, double pixel) : levels_(static_cast<std::size_t>(le
     while (frequencies_ < PointSpread::k_frequencies &&
            PointSpread::frequency(frequencies_) * pixel <= std::numbers::pi) {
         const double omega = PointSpread::frequency(frequencies_) * pixel;
-        shares_.push_back(transfer_of_pixels(omega));
+        pixel_transfers_.push_back(transfer_of_pixels(omega));
         const double alias = 2 * std::numbers::pi - omega;
-        // The table ends before the frequencies of very fine images do: they use its last entry.
+        // The table may end before the frequencies of very fine images do: its last entry is used.
         std::size_t index = std::min(frequencies_, PointSpread::k_frequencies - 2);
         while (index + 2 < PointSpread::k_frequencies &&
                PointSpread::frequency(index + 1) * pixel < alias)
@@ -268,8 +270,8 @@ BlurFit::BlurFit(int levels, double pixel) : levels_(static_cast<std::size_t>(le
         const double begin = PointSpread::frequency(index) * pixel;
         const double end = PointSpread::frequency(index + 1) * pixel;
         const double t = std::clamp((alias - begin) / (end - begin), 0.0, 1.0);
-        const double share = transfer_of_pixels(alias);
-        aliases_.push_back({index, share * (1 - t), share * t});
+        const double pixel_transfer = transfer_of_pixels(alias);
+        aliases_.push_back({index, pixel_transfer * (1 - t), pixel_transfer * t});
         ++frequencies_;
     }
     for (int level = 0; level < levels; ++level)
@@ -284,7 +286,7 @@ BlurFit::BlurFit(int levels, double pixel) : levels_(static_cast<std::size_t>(le
             normal[l * levels_ + m] = sum;
         }
     }
-    // The ridge alone leaves pivots above this.
+    // This bound holds, as the ridge alone leaves greater pivots.
     normal_.factor(normal, levels_, 0.1 * k_ridge / PointSpread::k_frequencies);
 }
 
@@ -292,11 +294,11 @@ void BlurFit::fit(const PointSpread::Transfer& transfer, std::span<double> weigh
     std::ranges::fill(weights, 0.0);
     for (std::size_t i = 0; i < frequencies_; ++i) {
         const Alias& alias = aliases_[i];
-        const double shown = shares_[i] * static_cast<double>(transfer[i]) +
-                             alias.below * static_cast<double>(transfer[alias.index]) +
-                             alias.above * static_cast<double>(transfer[alias.index + 1]);
+        const double visible = pixel_transfers_[i] * static_cast<double>(transfer[i]) +
+                               alias.below * static_cast<double>(transfer[alias.index]) +
+                               alias.above * static_cast<double>(transfer[alias.index + 1]);
         for (std::size_t l = 0; l < levels_; ++l)
-            weights[l] += responses_[l * frequencies_ + i] * shown;
+            weights[l] += responses_[l * frequencies_ + i] * visible;
     }
     normal_.solve(weights);
 }

@@ -12,23 +12,24 @@
 
 namespace uw {
 
-/// Light from a surface that uniform water scatters by small angles, any number of times, on its
-/// way to the camera: the surface's own radiance at the camera, blurred. In the small-angle
-/// approximation (Wells 1973) the optical transfer function of water between the camera and a
-/// surface at the distance T, relative to what is not scattered, is
+/// The point spread function of uniform water: light from a surface that is scattered by small
+/// angles, any number of times, on its way to the camera. It is the surface's unscattered radiance
+/// at the camera, blurred. In the small-angle approximation (Wells 1973) the optical transfer
+/// function of the water between the camera and a surface at the distance T, relative to the
+/// unscattered light, is
 ///
 ///     exp( b int_0^T p^(k (T - s) / T) ds ) - 1,
 ///
 /// with the phase function's Hankel transform p^(k) and angular frequencies k as seen by the camera
-/// [1/rad]. It is split by the distance s at which the light is scattered last, and the parts are
-/// tabulated.
+/// [1/rad]. It is split by the distance s of the scattering nearest to the camera, and the parts
+/// are tabulated.
 class PointSpread {
   public:
-    /// Frequencies in the table: 4 to an octave.
+    /// The number of tabulated frequencies, 4 per octave.
     static constexpr std::size_t k_frequencies = 80;
     using Transfer = std::array<float, k_frequencies>;
 
-    /// For surfaces up to the distance `farthest` [m].
+    /// Tabulates for surfaces up to the distance `farthest` [m].
     PointSpread(const Medium& medium, const DistanceIntervals& intervals, double farthest);
 
     /// A frequency of the table [1/rad]; they ascend.
@@ -36,10 +37,10 @@ class PointSpread {
 
     /// The surfaces' distances in the table [m], ascending.
     std::span<const double> distances() const { return distances_; }
-    /// The intervals in which light of these surfaces is scattered.
+    /// The number of intervals in which light of these surfaces is scattered.
     std::size_t interval_count() const { return intervals_; }
-    /// The transfer function of light that is scattered last in `interval`, for a surface at
-    /// distances()[distance]: 0 if it lies before the interval.
+    /// The transfer function of light whose scattering nearest to the camera is in `interval`, for
+    /// a surface at distances()[distance]; 0 if the surface is in front of the interval.
     const Transfer& transfer(std::size_t interval, std::size_t band, std::size_t distance) const {
         return transfers_[(interval * bands_ + band) * distances_.size() + distance];
     }
@@ -50,24 +51,24 @@ class PointSpread {
     std::vector<Transfer> transfers_;
 };
 
-/// A sum of images, each blurred by another width: level 0 is as it was, level l is blurred by a
-/// smooth kernel, nearly a Gaussian, of the standard deviation `deviation(l)`, computed at
-/// 1 / 2^(l-1) of the resolution (Burt & Adelson 1983). Beyond its edges an image goes on with the
-/// values there. Reused storage.
+/// A sum of images, each blurred by a width of its own: level 0 is not blurred, level l is blurred
+/// by a smooth, nearly Gaussian kernel of the standard deviation `deviation(l)`, at 1 / 2^(l-1) of
+/// the resolution (Burt & Adelson 1983). Images are continued beyond their edges by the values
+/// there. Storage is reused.
 class BlurPyramid {
   public:
     /// The standard deviation of level `level` [pixels]: 0, 0.7, 1.9, 4.0, …
     static double deviation(int level);
     /// The transfer function of `level` along an axis at the frequency `omega` [rad per pixel].
     static double transfer(int level, double omega);
-    /// So many levels that the last is computed from one pixel.
+    /// The number of levels for an image of this size: the last is computed from a single pixel.
     static int level_count(int width, int height);
 
-    /// Starts a sum of nothing.
+    /// Resets the sum to 0.
     void begin(int width, int height);
     /// Adds `image`, blurred by `level`; its contents are unspecified afterwards.
     void add(int level, Grid2D<float>& image);
-    /// The sum; valid until the next call of begin.
+    /// The sum of all images added; valid until the next call of begin.
     const Grid2D<float>& sum();
 
   private:
@@ -76,28 +77,28 @@ class BlurPyramid {
     Grid2D<float> rows_, coarse_;
 };
 
-/// Makes a PointSpread's transfer function of the levels of a BlurPyramid.
+/// Approximates a PointSpread's transfer function by a weighted sum of the levels of a BlurPyramid.
 class BlurFit {
   public:
-    /// For pixels of the angle `pixel` [rad].
+    /// `pixel`: the angle of a pixel [rad].
     BlurFit(int levels, double pixel);
 
-    /// The weights of the levels that sum up best to `transfer` as pixels show it, by least squares
-    /// over the logarithm of the frequency, as an edge weighs them. Surfaces and light are means
-    /// over pixels, and frequencies beyond the highest of an image look like lower ones.
+    /// The weights of the levels whose sum fits `transfer` best, as pixels show it: by least
+    /// squares over the logarithm of the frequency, as an edge weighs them. Surfaces and light are
+    /// means over pixels, and frequencies beyond the Nyquist frequency alias to lower ones.
     void fit(const PointSpread::Transfer& transfer, std::span<double> weights) const;
 
   private:
-    // What a frequency beyond that of the image adds to one within.
+    // The contribution of a frequency beyond Nyquist to its alias within.
     struct Alias {
-        std::size_t index;  // of the transfer function below it
+        std::size_t index;  // of the tabulated frequency below it
         double below, above;
     };
 
     std::size_t levels_, frequencies_ = 0;
-    std::vector<double> shares_;     // by frequency, of what is within
-    std::vector<Alias> aliases_;     // by frequency
-    std::vector<double> responses_;  // by level and frequency
+    std::vector<double> pixel_transfers_;  // by frequency
+    std::vector<Alias> aliases_;           // by frequency
+    std::vector<double> responses_;        // by level and frequency
     CholeskyFactor normal_;
 };
 

@@ -10,11 +10,11 @@ namespace uw {
 
 namespace {
 
-// Lattices of paths, each with random numbers of its own: two for each half of a node, and their
-// spread gives the variance.
+// Each node is estimated in independent batches of paths, two for each half; their spread gives the
+// variance.
 constexpr int k_node_batches = 4, k_batches_of_half = 2;
-// Least share of a surface's light that is taken to reach the camera.
-constexpr double k_min_seen = 1e-3;
+// Minimum fraction of a surface's light that is assumed to reach the camera.
+constexpr double k_min_throughput = 1e-3;
 
 enum NodeStream : std::uint64_t {
     k_node_water = 1,
@@ -31,8 +31,8 @@ double variance_of_half(double sum, double squares) {
     return std::max(0.0, squares / k_batches_of_half - mean * mean) / (k_batches_of_half - 1);
 }
 
-int scaled(int paths, double share) {
-    return static_cast<int>(std::lround(paths * share));
+int scaled(int paths, double scale) {
+    return static_cast<int>(std::lround(paths * scale));
 }
 
 void store(std::span<const double> sums, double scale, std::vector<float>& values) {
@@ -44,48 +44,48 @@ void store(std::span<const double> sums, double scale, std::vector<float>& value
 
 namespace {
 
-// None is left without, or nothing would tell where the guess is wrong.
-double share_of(double guess, double typical) {
+// Every node gets some paths, or nothing would show where the expectation is wrong.
+double scale_for(double expected, double typical) {
     constexpr double k_even = 0.3, k_max_of_typical = 8;
     if (!(typical > 0)) return 1;
-    return std::min(k_even + (1 - k_even) * guess / typical, k_max_of_typical);
+    return std::min(k_even + (1 - k_even) * expected / typical, k_max_of_typical);
 }
 
 }  // namespace
 
-double NodePaths::water_share(const RadianceNode& node) const {
-    return share_of(node.estimated_water, typical_water);
+double NodePaths::water_scale(const RadianceNode& node) const {
+    return scale_for(node.estimated_water, typical_water);
 }
 
-double NodePaths::surface_share(const RadianceNode& node) const {
-    return share_of(node.estimated_surface, typical_surface);
+double NodePaths::surface_scale(const RadianceNode& node) const {
+    return scale_for(node.estimated_surface, typical_surface);
 }
 
 struct RadianceEstimator::Workspace {
     CameraSegment segment;
     SurfaceLight light;
-    std::vector<double> seen;                                         // radiance of the surface
-    std::vector<double> water;                                        // as RadianceNode::water
-    std::vector<double> interval_mean, interval_squares, batch_mean;  // of a half, of a batch
+    std::vector<double> direct;  // direct light that the surface reflects
+    std::vector<double> water;   // as RadianceNode::water
+    std::vector<double> interval_mean, interval_squares, batch_mean;  // of a half, and of a batch
     std::vector<double> lit_indirect;                                 // as RadianceNode's
     std::vector<double> surface;
 };
 
-/// Adds up terms by the interval in which they leave the camera ray.
+/// Sums contributions by the interval in which they leave the camera ray.
 class RadianceEstimator::WaterSum final : public ContributionSink {
   public:
     WaterSum(const DistanceIntervals& intervals, std::size_t groups, std::size_t bands,
              Workspace& w)
         : intervals_(intervals), groups_(groups), bands_(bands), w_(w) {}
 
-    /// The terms that follow are those of one path among `count`, which sees lit surfaces or stays
-    /// in the water.
+    /// The contributions that follow belong to one path among `count`, either towards lit surfaces
+    /// or in the water alone.
     void begin_path(int count, bool is_lit) {
-        share_ = 1.0 / count;
+        weight_ = 1.0 / count;
         is_lit_ = is_lit;
         path_ = 0;
     }
-    /// The light of the path's terms, summed over the bands.
+    /// The current path's light, summed over the bands.
     double of_path() const { return path_; }
 
     void add(const PathContribution& term) override {
@@ -94,22 +94,22 @@ class RadianceEstimator::WaterSum final : public ContributionSink {
         double* sum = &w_.water[(i * groups_ + group) * bands_];
         double mean = 0;
         for (std::size_t b = 0; b < bands_; ++b) {
-            sum[b] += share_ * term.radiance[b];
+            sum[b] += weight_ * term.radiance[b];
             mean += term.radiance[b];
         }
-        w_.batch_mean[i] += share_ * mean;
+        w_.batch_mean[i] += weight_ * mean;
         path_ += mean;
-        // The light of a surface that was looked up comes from no lamp.
+        // Light that was looked up in the cache at a surface comes from no emitter.
         if (is_lit_ && term.reflections > 0 && term.emitter == k_no_emitter)
             for (std::size_t b = 0; b < bands_; ++b)
-                w_.lit_indirect[b] += share_ * term.radiance[b];
+                w_.lit_indirect[b] += weight_ * term.radiance[b];
     }
 
   private:
     const DistanceIntervals& intervals_;
     std::size_t groups_, bands_;
     Workspace& w_;
-    double share_ = 1, path_ = 0;
+    double weight_ = 1, path_ = 0;
     bool is_lit_ = false;
 };
 
@@ -150,8 +150,8 @@ void RadianceEstimator::estimate_surface(const Place& place, const NodePaths& pa
     const bool has_hit = scene_.surfaces->closest_hit(*ray, k_far, sample.hit);
     begin(sample, has_hit, w, node);
     if (!has_hit) return;
-    node.surface_share = paths.surface_share(node);
-    trace_surface(place.seed, scaled(paths.surface, node.surface_share), w, node);
+    node.surface_scale = paths.surface_scale(node);
+    trace_surface(place.seed, scaled(paths.surface, node.surface_scale), w, node);
 }
 
 Point3 RadianceEstimator::find_lit_surfaces(const Place& place, int paths,
@@ -197,23 +197,23 @@ void RadianceEstimator::estimate_surface(const SurfaceSample& sample, int paths,
 void RadianceEstimator::begin(const SurfaceSample& sample, bool has_hit, Workspace& w,
                               RadianceNode& node) const {
     node.has_ray = true;
-    node.reach = has_hit ? sample.hit.distance : k_far;
-    w.seen.clear();
+    node.max_distance = has_hit ? sample.hit.distance : k_far;
+    w.direct.clear();
     if (has_hit) {
         transport_.surfaces->evaluate_one(sample, w.light);
         const SurfaceReflection reflection(*scene_.surfaces, sample, static_cast<int>(bands()));
-        w.seen.assign(bands(), 0.0);
+        w.direct.assign(bands(), 0.0);
         Spectrum brdf;
         for (std::size_t j = 0; j < w.light.emitter_count(); ++j) {
             if (!w.light.visible(0, j)) continue;
             brdf_for(w.light.emitters()[j], reflection, sample, brdf);
             for (std::size_t b = 0; b < bands(); ++b)
-                w.seen[b] += w.light.irradiance(0, j, b) * brdf[b];
+                w.direct[b] += w.light.irradiance(0, j, b) * brdf[b];
         }
         node.surface = NodeSurface{sample.hit.object_id, sample.hit.position, sample.hit.normal,
                                    reflection.is_glossy()};
     }
-    transport_.paths->begin(sample.ray, has_hit ? &sample.hit : nullptr, w.seen, w.segment);
+    transport_.paths->begin(sample.ray, has_hit ? &sample.hit : nullptr, w.direct, w.segment);
     const CameraSegment::Expected& expected = w.segment.expected;
     node.mean_light = expected.is_known ? expected.pixel : 0;
     node.estimated_water = expected.pixel - expected.of_surface;
@@ -236,19 +236,19 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
     const std::size_t count = intervals_.count();
     weights_.find(*ray, node.weights);
     for (std::size_t k = 0; k < node.weights.size(); ++k)
-        node.weights[k] *=
-            static_cast<float>(intervals_.share(k / bands(), k % bands(), node.reach));
+        node.weights[k] *= static_cast<float>(
+            intervals_.fraction_before(k / bands(), k % bands(), node.max_distance));
     node.mean_weights.assign(count, 0.0F);
     for (std::size_t k = 0; k < node.weights.size(); ++k)
         node.mean_weights[k / bands()] += node.weights[k] / static_cast<float>(bands());
-    // No surface guides the paths that stay in the water.
+    // Paths in the water alone are not guided by the surface.
     transport_.paths->begin(*ray, has_hit ? &hit : nullptr, {}, w.segment);
     w.segment.paths = {};
     CameraSegment::Expected& expected = w.segment.expected;
     if (expected.is_known) expected.pixel = std::max(expected.pixel, node.mean_light);
     if (expected.is_known && weights_.vary()) {
-        // Particles may be lit up anywhere, of which the lamps' guides know nothing. What is
-        // typical is guessed without most of the scattered light: it is a few times as much.
+        // Particles may be lit anywhere, which the lamps' guides do not know. The typical light is
+        // estimated without most of the multiple scattering, which is a few times as much.
         constexpr double k_ambient = 10, k_min_own = 3;
         expected.ambient = std::max(expected.ambient, k_ambient * typical_light);
         expected.pixel = std::max(expected.pixel, k_min_own * typical_light);
@@ -257,7 +257,7 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
     w.batch_mean.assign(count, 0.0);
     w.lit_indirect.assign(bands(), 0.0);
     WaterSum sum(intervals_, groups_, bands(), w);
-    node.water_share = paths.water_share(node);
+    node.water_scale = paths.water_scale(node);
     const auto trace = [&](NodeStream stream, int batch, int all, RadianceNode::Moments& moments,
                            const auto& trace_one) {
         const int in_batch = std::max(1, all / k_node_batches);
@@ -280,11 +280,11 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
             w.interval_mean.assign(count, 0.0);
             w.interval_squares.assign(count, 0.0);
         }
-        trace(k_node_lit, batch, scaled(paths.lit, node.water_share), node.lit,
+        trace(k_node_lit, batch, scaled(paths.lit, node.water_scale), node.lit,
               [&](PathRandom& random) {
                   return transport_.paths->trace_lit_surfaces(w.segment, indirect, random, sum);
               });
-        trace(k_node_water, batch, scaled(paths.water, node.water_share), node.water,
+        trace(k_node_water, batch, scaled(paths.water, node.water_scale), node.water,
               [&](PathRandom& random) {
                   return transport_.paths->trace_water(w.segment, random, sum);
               });
@@ -332,12 +332,13 @@ void RadianceEstimator::estimate_mirrored(const SurfaceSample& sample, int paths
     for (double& value : radiance) value /= paths;
 }
 
-// Diffuse reflection as of a white surface, whose colour is that of each pixel; gloss as it is.
+// Diffuse reflection is estimated for a white surface, as each pixel has a colour of its own; the
+// specular lobe is estimated as it is.
 void RadianceEstimator::trace_surface(std::uint64_t seed, int paths, Workspace& w,
                                       RadianceNode& node) const {
     const std::size_t bands = this->bands();
     const int in_batch = std::max(1, paths / k_node_batches);
-    const auto trace = [&](NodeStream stream, double share,
+    const auto trace = [&](NodeStream stream, double throughput,
                            std::vector<float> NodeRadiance::*values) {
         std::array<double, k_node_batches> means{};
         SurfaceSum sum(groups_, bands, w.surface, stream == k_node_glossy);
@@ -351,26 +352,26 @@ void RadianceEstimator::trace_surface(std::uint64_t seed, int paths, Workspace& 
                                      (in_batch * k_node_batches);
             }
             const auto half = static_cast<std::size_t>(batch / k_batches_of_half);
-            store(w.surface, 1.0 / (in_batch * k_batches_of_half * share),
+            store(w.surface, 1.0 / (in_batch * k_batches_of_half * throughput),
                   node.halves[half].*values);
             means[static_cast<std::size_t>(batch)] =
-                sum.end_batch(1.0 / (in_batch * static_cast<double>(bands) * share));
+                sum.end_batch(1.0 / (in_batch * static_cast<double>(bands) * throughput));
         }
         return means;
     };
     w.segment.paths = {};
     SurfaceHit& hit = w.segment.water.hit;
     for (std::size_t b = 0; b < bands; ++b) {
-        const double seen = hit.reflectance[b] * w.segment.transmittance[b];
-        node.seen_of_band.push_back(static_cast<float>(seen));
-        node.surface_seen += seen / static_cast<double>(bands);
+        const double throughput = hit.reflectance[b] * w.segment.transmittance[b];
+        node.surface_throughput_by_band.push_back(static_cast<float>(throughput));
+        node.surface_throughput += throughput / static_cast<double>(bands);
     }
     hit.reflectance = per_band(bands, [](std::size_t) { return 1.0; });
     hit.has_material = false;
-    // Weights are those of what the camera sees, so that paths end as they would in a pixel.
-    const double share = std::max(node.surface_seen, k_min_seen);
-    std::ranges::fill(w.segment.transmittance, share);
-    const auto means = trace(k_node_diffuse, share, &NodeRadiance::diffuse);
+    // The throughput is the camera's, so that Russian roulette ends paths as it would in a pixel.
+    const double throughput = std::max(node.surface_throughput, k_min_throughput);
+    std::ranges::fill(w.segment.transmittance, throughput);
+    const auto means = trace(k_node_diffuse, throughput, &NodeRadiance::diffuse);
     for (std::size_t half = 0; half < node.halves.size(); ++half) {
         double sum = 0, squares = 0;
         for (std::size_t i = 0; i < k_batches_of_half; ++i) {
@@ -381,7 +382,7 @@ void RadianceEstimator::trace_surface(std::uint64_t seed, int paths, Workspace& 
         NodeRadiance& light = node.halves[half];
         light.diffuse_mean = sum / k_batches_of_half;
         light.diffuse_variance = variance_of_half(sum, squares);
-        node.mean_light += node.surface_seen * sum / k_node_batches;
+        node.mean_light += node.surface_throughput * sum / k_node_batches;
     }
     if (!node.surface->is_glossy) return;
     hit.reflectance = {};

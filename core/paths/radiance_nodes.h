@@ -24,73 +24,74 @@ struct NodeSurface {
     bool is_glossy = false;
 };
 
-/// Light that was scattered or reflected more than once, at one image position.
+/// Light that was scattered or reflected more than once, at one position in the image.
 struct NodeRadiance {
-    /// By interval of distance, group and band: radiance from the water within it, at the camera.
+    /// Radiance at the camera from the water of each interval of distance, by interval, group and
+    /// band.
     std::vector<float> water;
-    /// By group and band: indirect irradiance / pi, what a white surface would reflect, and then
-    /// what the surface's specular lobe reflects [W m^-2 sr^-1], but for what it mirrors
+    /// By group and band: indirect irradiance / pi, as a white surface would reflect it, and what
+    /// the surface's specular lobe reflects [W m^-2 sr^-1], except what it mirrors
     /// (PathTracer::is_mirrored).
     std::vector<float> diffuse, glossy;
-    // The sums over the groups, means over the bands:
+    // Sums over the groups, means over the bands:
     std::vector<float> water_mean;  // by interval
     double diffuse_mean = 0;
-    // The variances of these as the estimate's own batches tell them, inverse to NodePaths' shares.
+    // The variances of these as estimated from the batches, inverse to NodePaths' scales.
     std::vector<float> water_variance;
     double diffuse_variance = 0;
 };
 
-/// Standard errors of light on a surface, by band, as NodeRadiance has it.
+/// Standard errors of the light on a surface, by band, as in NodeRadiance.
 struct SurfaceErrors {
     std::vector<float> diffuse, glossy;
 };
 
-/// Estimates of that light, and what they belong to.
+/// Cached radiance at a position in the image (Jarosz et al. 2008), as estimated by light paths.
 struct RadianceNode {
     bool has_ray = false;
     std::optional<NodeSurface> surface;
-    double reach = 0;  // of the water along its ray [m]
+    double max_distance = 0;  // of the water along its ray [m]
     /// IntervalWeights of its ray, by interval and band, and their means over the bands.
     std::vector<float> weights, mean_weights;
-    double mean_light = 0;  // roughly that of the ray, mean over the bands
-    /// The light of its water and what a white surface would show, as guessed before any path.
+    double mean_light = 0;  // rough radiance of the ray, mean over the bands
+    /// The expected light of its water, and of a white surface, as estimated before any path.
     double estimated_water = 0, estimated_surface = 0;
-    /// The camera's radiance per light on a white surface, by band, and its mean over the bands.
-    std::vector<float> seen_of_band;
-    double surface_seen = 0;
-    /// What of its water's light the indirect light on surfaces makes, by band.
+    /// The camera's radiance per radiance of a white surface, by band, and its mean over the bands.
+    std::vector<float> surface_throughput_by_band;
+    double surface_throughput = 0;
+    /// The part of the water's light that comes from indirect light on surfaces, by band.
     std::vector<float> lit_indirect;
-    /// Two independent estimates: what is decided by one is applied to the other.
+    /// Two independent estimates: decisions by one are applied to the other.
     std::array<NodeRadiance, 2> halves;
-    double water_share = 1, surface_share = 1;  // NodePaths'
-    /// What a path of one kind brings, as means over the bands, and its work.
+    double water_scale = 1, surface_scale = 1;  // see NodePaths
+    /// The light of a single path, as a mean over the bands, its variance, and its work.
     struct Moments {
         double mean = 0, variance = 0, work = 0;
     };
-    Moments lit, water;       // NodePaths
-    double surface_work = 0;  // of a path of the third kind
+    Moments lit, water;       // of paths as in NodePaths
+    double surface_work = 0;  // of a path from the surface
 };
 
-/// How many light paths of each kind a node gets: these where its light is guessed to be typical,
-/// and the more the brighter it is, as noise is in proportion to the light.
+/// The number of light paths of each kind at a node whose expected light is typical. Brighter nodes
+/// get more, as noise is in proportion to the light.
 struct NodePaths {
-    int surface = 512;  // from its surface: indirect light on it
-    int lit = 512;      // to surfaces that are seen through scattering
+    int surface = 512;  // from the node's surface: indirect light on it
+    int lit = 512;      // to surfaces that are visible through scattering
     int water = 512;    // in the water alone
-    // The means of what nodes guess; 0: all of them get as many.
+    // The mean expected light of the nodes; 0: all nodes get the same numbers.
     double typical_water = 0, typical_surface = 0;
 
-    /// The numbers for a node, relative to these: of paths in the water, and of those from its
+    /// The factors of a node's numbers of paths: of those in the water, and of those from its
     /// surface.
-    double water_share(const RadianceNode& node) const;
-    double surface_share(const RadianceNode& node) const;
+    double water_scale(const RadianceNode& node) const;
+    double surface_scale(const RadianceNode& node) const;
 };
 
-/// Estimates nodes by light paths. Thread safe.
+/// Estimates the radiance at nodes by light paths. Thread safe.
 class RadianceEstimator {
   public:
-    /// All references must outlive this object; `transport` has paths. `groups`: one for all light,
-    /// or one per lamp and one for emission.
+    /// All references must outlive this object; `transport` must have paths. `groups`: one for all
+    /// light, or one per lamp and one for emission.
     RadianceEstimator(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
                       const IntervalWeights& weights, std::size_t groups)
         : rays_(rays),
@@ -104,28 +105,28 @@ class RadianceEstimator {
     std::size_t bands() const { return static_cast<std::size_t>(scene_.medium->band_count()); }
     const RaySource& rays() const { return rays_; }
 
-    /// What the ray of a node sees: in the image at (x, y) [pixels], with random numbers of `seed`.
+    /// The position of a node in the image [pixels], and the seed of its random numbers.
     struct Place {
         double x = 0, y = 0;
         std::uint64_t seed = 0;
     };
     /// Begins a node with the indirect light on its surface, if it has one.
     void estimate_surface(const Place& place, const NodePaths& paths, RadianceNode& node) const;
-    /// The surfaces that some paths from a node meet first (PathTracer::find_lit_surface), and
-    /// where its ray begins in the water.
+    /// Finds the surfaces that some paths from a node meet first (PathTracer::find_lit_surface);
+    /// returns the origin of its ray in the water.
     Point3 find_lit_surfaces(const Place& place, int paths,
                              std::vector<SurfaceSample>& samples) const;
-    /// Adds the light of the water to a node that was begun. `indirect`: on all surfaces, by group
-    /// and band. `typical_light`: the mean of the begun nodes' `mean_light`; it guides paths.
+    /// Adds the light of the water to a node that was begun. `indirect`: the cache of all surfaces,
+    /// by group and band. `typical_light`: the mean of the begun nodes' `mean_light`, for guiding.
     void estimate_water(const Place& place, const NodePaths& paths, const IrradianceCache& indirect,
                         double typical_light, RadianceNode& node) const;
-    /// The light on one surface sample alone, by this many paths; and its errors, as far as two
-    /// halves of the paths can tell.
+    /// Estimates the light on a single surface sample, by this many paths, and its errors from the
+    /// difference of two halves of the paths.
     void estimate_surface(const SurfaceSample& sample, int paths, NodeRadiance& light,
                           SurfaceErrors& errors) const;
-    /// What the sample's specular lobe mirrors (PathTracer::trace_mirrored), by this many paths:
-    /// the radiance at the sample, by group and band, and the sum over the paths of the squares of
-    /// theirs, by band.
+    /// Estimates what the sample's specular lobe mirrors (PathTracer::trace_mirrored), by this many
+    /// paths: the radiance at the sample, by group and band, and the sum of the paths' squares, by
+    /// band.
     void estimate_mirrored(const SurfaceSample& sample, int paths, std::vector<double>& radiance,
                            std::vector<double>& squares) const;
 
@@ -146,23 +147,23 @@ class RadianceEstimator {
     std::size_t groups_;
 };
 
-/// The cosine of the largest angle between the normals at two places whose indirect light is
-/// alike.
+/// The minimum cosine between the normals at two places whose indirect light counts as alike.
 inline constexpr double k_min_node_cosine = 0.96;
 
-/// How much of the water of an interval lies before a node's surface: of `enough` of it the node
-/// tells what light there is, of `little` if no other node does.
+/// How much of the water of an interval lies before a node's surface: `enough` to estimate its
+/// light, or `little`, which is used if no other node has more.
 enum class NodeReach : unsigned char { none, little, enough };
 inline NodeReach reach_into(const RadianceNode& node, const DistanceIntervals& intervals,
                             std::size_t interval) {
-    constexpr double k_min_share = 0.3;
-    if (node.mean_weights.empty() || node.reach <= intervals.begin(interval))
+    constexpr double k_min_fraction = 0.3;
+    if (node.mean_weights.empty() || node.max_distance <= intervals.begin(interval))
         return NodeReach::none;
-    return intervals.share(interval, 0, node.reach) >= k_min_share ? NodeReach::enough
-                                                                   : NodeReach::little;
+    return intervals.fraction_before(interval, 0, node.max_distance) >= k_min_fraction
+               ? NodeReach::enough
+               : NodeReach::little;
 }
 
-/// Whether two nodes tell of light on the same surface.
+/// Whether two nodes see the same surface, under similar normals.
 inline bool see_same_surface(const RadianceNode& a, const RadianceNode& b) {
     return a.surface && b.surface && a.surface->object_id == b.surface->object_id &&
            a.surface->is_glossy == b.surface->is_glossy &&

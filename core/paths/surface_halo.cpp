@@ -12,17 +12,18 @@ namespace uw {
 
 namespace {
 
-// Angles of cells for which levels are fitted, in between they are interpolated.
+// The levels of the blur are fitted for so many angles of cells per octave, and interpolated.
 constexpr double k_scales_of_octave = 4;
-// Weights that are left out, relative to the surface's own light.
+// Weights below this are left out, relative to the surface's own light.
 constexpr float k_min_weight = 1e-5F;
-// As many cells as these tell what is seen, even if they are parts of pixels.
+// In small images pixels are divided into cells, up to about this number of cells.
 constexpr int k_fine_cells = 130'000;
-// Cells show the same surface as a pixel if their distances differ by less, relatively.
+// Cells show the same surface as a pixel if their relative distances differ by less.
 constexpr double k_agreeing_distance = 0.1;
 
-/// Water that changes with depth, as PointSpread can have it: the medium as it is in the mean on
-/// camera rays to surfaces, and by how much more or less of each surface's light is scattered.
+/// Water that changes with depth, reduced to what PointSpread can represent: the mean medium on the
+/// camera rays to surfaces, and a factor for how much more or less of each surface's light is
+/// scattered.
 class WaterInView {
   public:
     WaterInView(const RaySource& rays, const LitScene& scene)
@@ -53,8 +54,8 @@ class WaterInView {
 
     const Medium& medium() const { return medium_; }
 
-    /// Of a surface's light at the end of a camera ray, e^(b T) - 1 times what arrives without
-    /// being scattered arrives scattered: this, by that of the mean medium.
+    /// e^(b T) - 1, the scattered light of a surface at the end of a camera ray relative to its
+    /// unscattered light, divided by the same of the mean medium.
     Spectrum factors(const Ray& ray, double distance) const {
         if (!strata_) return per_band(k_max_bands, [](std::size_t) { return 1.0; });
         std::vector<double> columns(per_unit_.size());
@@ -63,7 +64,7 @@ class WaterInView {
             double depth = uniform_[band] * distance;
             for (std::size_t k = 0; k < columns.size(); ++k)
                 depth += per_unit_[k][band] * columns[k];
-            constexpr double k_opaque = 50;  // nothing is seen beyond
+            constexpr double k_opaque = 50;  // optical depth beyond which nothing is visible
             const double mean = mean_[band] * distance;
             return mean > 0 ? std::expm1(std::min(depth, k_opaque)) /
                                   std::expm1(std::min(mean, k_opaque))
@@ -80,14 +81,14 @@ class WaterInView {
 
 }  // namespace
 
-/// Blurs one channel interval by interval.
+/// Blurs one channel, interval by interval.
 class SurfaceHalo::Spreading {
   public:
     Spreading(const SurfaceHalo& halo, const PointSpread& spread, std::span<const BlurFit> fits)
         : halo_(halo), spread_(spread), fits_(fits) {}
 
-    /// The light of a channel that is scattered last in `interval`, by cell. Valid until the next
-    /// call.
+    /// The light of a channel whose scattering nearest to the camera is in `interval`, by cell.
+    /// Valid until the next call.
     const Grid2D<float>& part(std::size_t interval, std::size_t band, double begin,
                               std::span<const float> source) {
         const Grid2D<Cell>& cells = halo_.cells_;
@@ -95,7 +96,7 @@ class SurfaceHalo::Spreading {
         pyramid_.begin(cells.width(), cells.height());
         const std::size_t distances = spread_.distances().size();
         for (std::size_t level = 0; level < levels(); ++level) {
-            if (greatest_[level] < k_min_weight) continue;
+            if (max_weights_[level] < k_min_weight) continue;
             image_.resize(cells.width(), cells.height());
             for (std::size_t i = 0; i < cells.size(); ++i) {
                 const Cell& cell = cells[i];
@@ -128,7 +129,7 @@ class SurfaceHalo::Spreading {
     void find_level_weights(std::size_t interval, std::size_t band) {
         const std::size_t scales = halo_.angles_.size(), distances = spread_.distances().size();
         weights_.resize(levels() * scales * distances);
-        greatest_.assign(levels(), 0.0F);
+        max_weights_.assign(levels(), 0.0F);
         std::vector<double> fitted(levels());
         for (std::size_t scale = 0; scale < scales; ++scale) {
             for (std::size_t d = 0; d < distances; ++d) {
@@ -136,7 +137,7 @@ class SurfaceHalo::Spreading {
                 for (std::size_t level = 0; level < levels(); ++level) {
                     const auto weight = static_cast<float>(fitted[level]);
                     weights_[(level * scales + scale) * distances + d] = weight;
-                    greatest_[level] = std::max(greatest_[level], std::abs(weight));
+                    max_weights_[level] = std::max(max_weights_[level], std::abs(weight));
                 }
             }
         }
@@ -147,8 +148,8 @@ class SurfaceHalo::Spreading {
     std::span<const BlurFit> fits_;  // by scale
     BlurPyramid pyramid_;
     Grid2D<float> image_;
-    std::vector<float> weights_;   // by level, scale and distance
-    std::vector<float> greatest_;  // by level
+    std::vector<float> weights_;      // by level, scale and distance
+    std::vector<float> max_weights_;  // by level
 };
 
 SurfaceHalo::SurfaceHalo(const RaySource& rays, const LitScene& scene,
@@ -272,20 +273,20 @@ void SurfaceHalo::trace(const RaySource& rays, const LitScene& scene,
                 source_[c * cells_.size() + cell] = static_cast<float>(values[c]);
         }
     });
-    // Angles between the least and the greatest; where a cell has none, any will do.
-    float least = std::numeric_limits<float>::max(), greatest = 0;
+    // Tabulates angles from the smallest to the greatest; a cell without one may use any.
+    float min_angle = std::numeric_limits<float>::max(), max_angle = 0;
     for (const float angle : angles) {
         if (!(angle > 0)) continue;
-        least = std::min(least, angle);
-        greatest = std::max(greatest, angle);
+        min_angle = std::min(min_angle, angle);
+        max_angle = std::max(max_angle, angle);
     }
-    if (greatest == 0) least = greatest = 1;
+    if (max_angle == 0) min_angle = max_angle = 1;
     const auto place_of = [&](double angle) {
-        return k_scales_of_octave * std::log2(std::max(angle / least, 1.0));
+        return k_scales_of_octave * std::log2(std::max(angle / min_angle, 1.0));
     };
-    const double last = std::min(std::floor(place_of(greatest)) + 1, 255.0);
+    const double last = std::min(std::floor(place_of(max_angle)) + 1, 255.0);
     for (double scale = 0; scale <= last; ++scale)
-        angles_.push_back(least * std::exp2(scale / k_scales_of_octave));
+        angles_.push_back(min_angle * std::exp2(scale / k_scales_of_octave));
     for (std::size_t i = 0; i < cells_.size(); ++i)
         cells_[i].scale = static_cast<float>(std::min(place_of(angles[i]), last - 1e-3));
 }
@@ -309,11 +310,11 @@ void SurfaceHalo::find_cells_of_pixel(double x, double y, std::vector<Corner>& c
                           count - cells_of_pixel_);
     };
     const int i = first(x, cells_.width()), j = first(y, cells_.height());
-    const double share = 1.0 / (cells_of_pixel_ * cells_of_pixel_);
+    const double weight = 1.0 / (cells_of_pixel_ * cells_of_pixel_);
     cells.clear();
     for (int below = 0; below < cells_of_pixel_; ++below)
         for (int right = 0; right < cells_of_pixel_; ++right)
-            cells.push_back({cells_.index(i + right, j + below), share});
+            cells.push_back({cells_.index(i + right, j + below), weight});
 }
 
 void SurfaceHalo::add(double x, double y, double distance, double weight,
@@ -321,7 +322,7 @@ void SurfaceHalo::add(double x, double y, double distance, double weight,
     if (intervals_ == 0) return;
     thread_local std::vector<Corner> cells;
     find_cells_of_pixel(x, y, cells);
-    // Only the cells that see the same surface count, if there are any.
+    // Only cells that show the same surface are used, if there are any.
     const auto agrees = [&](const Corner& corner) {
         const double other = cells_[corner.cell].distance;
         return distance < k_far ? std::abs(other - distance) <= k_agreeing_distance * distance
@@ -332,9 +333,9 @@ void SurfaceHalo::add(double x, double y, double distance, double weight,
         if (agrees(cell)) same += cell.weight;
     for (const Corner& cell : cells) {
         if (same > 0 && !agrees(cell)) continue;
-        const double share = weight * cell.weight / (same > 0 ? same : 1);
+        const double cell_weight = weight * cell.weight / (same > 0 ? same : 1);
         const float* light = &light_[cell.cell * channels_];
-        for (std::size_t c = 0; c < channels_; ++c) radiance[c] += share * light[c];
+        for (std::size_t c = 0; c < channels_; ++c) radiance[c] += cell_weight * light[c];
     }
 }
 

@@ -16,54 +16,55 @@
 
 namespace uw {
 
-/// Light of surfaces that the water scatters by small angles on its way to the camera
-/// (PointSpread), all over an image: the surfaces as the camera sees them, blurred. Light is taken
-/// to reach a pixel if it is scattered last before the pixel's own surface.
+/// The halo of lit surfaces: their light that the water scatters by small angles on its way to the
+/// camera, i.e. the surfaces as the camera sees them, blurred by the PointSpread (Wells 1973), all
+/// over an image. It reaches a pixel if its scattering nearest to the camera is in front of the
+/// pixel's own surface.
 ///
-/// Computed for cells of one or some pixels of the whole image, whatever part of it is rendered;
-/// those of small images, whose pixels show more than one cell tells, are parts of pixels.
+/// It is computed for cells of one or more pixels of the whole image, whatever part of it is
+/// rendered. In small images, whose pixels vary more than that, cells are parts of pixels.
 class SurfaceHalo {
   public:
-    /// Sets the radiance at the camera of a sample, which is number `index` of `light`, by channel.
+    /// Sets the radiance at the camera of a sample, which has the index `index` in `light`, by
+    /// channel.
     using Radiance = std::function<void(const SurfaceSample&, const SurfaceLight& light,
                                         std::size_t index, std::span<double> radiance)>;
     struct Position {
         double x, y;  // in the image [pixels]
     };
 
-    /// For `channels` channels, each of a band: channel % band_count. `cells`: at most. Reads the
-    /// references only here.
+    /// Each of `channels` channels belongs to the band channel % band_count. `cells`: their maximum
+    /// number. The references are used only during construction.
     SurfaceHalo(const RaySource& rays, const LitScene& scene, const SurfaceLighting& lighting,
                 const DistanceIntervals& intervals, std::size_t channels, int cells,
                 const Radiance& radiance, std::span<const Position> nodes);
 
-    /// The number of intervals in which there is such light.
+    /// The number of intervals in which the halo is scattered.
     std::size_t interval_count() const { return intervals_; }
-    /// The light that is scattered last in each of them, by interval and channel, at the position
-    /// of number `node`.
+    /// The halo by interval of the scattering nearest to the camera and channel, at nodes[node].
     std::span<const float> of_node(std::size_t node) const {
         return std::span(node_light_)
             .subspan(node * intervals_ * channels_, intervals_ * channels_);
     }
-    /// Whether the water changes with depth, and the light is that of water as it is in the mean.
+    /// Whether the water changes with depth, so that the halo is that of the mean water.
     bool is_of_mean_water() const { return mean_water_.has_value(); }
-    /// How much even light, of radiance 1, the mean water scatters towards the camera up to a
-    /// distance. Precondition: is_of_mean_water().
+    /// The light that the mean water scatters towards the camera up to a distance, if the radiance
+    /// is 1 everywhere: b (1 - e^(-c distance)) / c. Precondition: is_of_mean_water().
     double scattered_by_mean_water(double distance, std::size_t band) const {
         const double c = mean_water_->attenuation[band];
         const double depth = c * distance;
         return mean_water_->scattering[band] *
                (depth > 1e-6 ? (1 - std::exp(-depth)) / c : distance);
     }
-    /// Adds the mean light of the pixel around an image position [pixels], along its rays up to
-    /// `distance`, times `weight`, to `radiance`, by channel.
+    /// Adds `weight` times the mean halo of the pixel around an image position [pixels] to
+    /// `radiance`, by channel, for rays up to `distance` [m].
     void add(double x, double y, double distance, double weight, std::span<double> radiance) const;
 
   private:
     struct Cell {
         float distance = 0;  // of the surface [m], infinity if there is none
         float place = 0;     // among the distances of PointSpread
-        float scale = 0;     // place of its angle among the angles
+        float scale = 0;     // of its angle among the angles
     };
     class Spreading;
     struct Corner {
@@ -80,7 +81,7 @@ class SurfaceHalo {
         Spectrum scattering, attenuation;  // [1/m]
     };
 
-    std::optional<MeanWater> mean_water_;  // none: it is the same everywhere
+    std::optional<MeanWater> mean_water_;  // none: the water is the same everywhere
     std::size_t channels_ = 0, intervals_ = 0;
     int cells_of_pixel_ = 1;  // in each direction
     double spacing_ = 1;      // of the cells [pixels]

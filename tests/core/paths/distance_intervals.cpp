@@ -47,13 +47,13 @@ TEST_F(Intervals, ShareTheLightOfGlowingWater) {
     const Spectrum c = renderer_.assembled().water.medium.uniform.attenuation();
     for (std::size_t i = 0; i < 10; ++i) {
         for (std::size_t b = 0; b < 3; ++b) {
-            EXPECT_EQ(all.share(i, b, all.begin(i)), 0);
-            EXPECT_EQ(all.share(i, b, all.end(i)), 1);
+            EXPECT_EQ(all.fraction_before(i, b, all.begin(i)), 0);
+            EXPECT_EQ(all.fraction_before(i, b, all.end(i)), 1);
             const double s = 0.3 * all.begin(i) + 0.7 * all.end(i);
             // int e^(-c s) ds up to s, over the whole; 1e-10: rounding of the differences.
             const double up_to = std::exp(-c[b] * all.begin(i)) - std::exp(-c[b] * s);
             const double whole = std::exp(-c[b] * all.begin(i)) - std::exp(-c[b] * all.end(i));
-            EXPECT_NEAR(all.share(i, b, s), up_to / whole, 1e-10);
+            EXPECT_NEAR(all.fraction_before(i, b, s), up_to / whole, 1e-10);
         }
     }
 }

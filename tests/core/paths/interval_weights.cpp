@@ -52,7 +52,7 @@ TEST_F(IntervalWeightsTest, OfUniformWaterHaveAClosedForm) {
                 const double c = absorption(b) + scattering(b);
                 const double truth =
                     scattering(b) / c * (std::exp(-c * begin) - std::exp(-c * end));
-                EXPECT_NEAR(found[i * 2 + b] * intervals_->share(i, b, reach), truth,
+                EXPECT_NEAR(found[i * 2 + b] * intervals_->fraction_before(i, b, reach), truth,
                             1e-6 * truth + 1e-12)
                     << i;  // single precision
             }

@@ -16,9 +16,9 @@ std::vector<FitNode> nodes_of(
     const std::function<double(int, int)>& value, double variance,
     const std::function<bool(int, int)>& takes_part = [](int, int) { return true; }) {
     std::vector<FitNode> nodes;
-    constexpr int k_reach = LatticeFit::k_reach;
-    for (int y = -k_reach; y <= k_reach; ++y)
-        for (int x = -k_reach; x <= k_reach; ++x)
+    constexpr int k_max_radius = LatticeFit::k_max_radius;
+    for (int y = -k_max_radius; y <= k_max_radius; ++y)
+        for (int x = -k_max_radius; x <= k_max_radius; ++x)
             if (takes_part(x, y)) nodes.push_back({x, y, value(x, y), variance, nodes.size()});
     std::ranges::stable_sort(nodes, std::less(), [](const FitNode& node) {
         return node.dx * node.dx + node.dy * node.dy;
