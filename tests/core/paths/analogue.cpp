@@ -1,6 +1,6 @@
 // ctest labels: statistical slow
-// Fluence in small spheres of water with a cloud of particles, before a wall and around a box,
-// against counted photons.
+// The fluence in small spheres of water with a cloud of particles, in front of a wall and around a
+// box, against an analog random walk of counted photons.
 #include <gtest/gtest.h>
 
 #include "tests/support/gaussian_field.h"
@@ -13,8 +13,8 @@ namespace {
 
 using Analogue = AnaloguePhotons;
 
-/// The water is forward scattering, the cloud less so. The box's shadow falls on part of the cloud
-/// and on the second detector; the third lies in the cloud, the last before the wall.
+/// The water scatters forward, the cloud less so. The box's shadow falls on part of the cloud and
+/// on the second detector; the third lies in the cloud, the last in front of the wall.
 Analogue::Scene harbour() {
     Analogue::Scene scene;
     scene.water = {0.15, 0.35, 0.85};
@@ -29,11 +29,11 @@ Analogue::Scene harbour() {
     return scene;
 }
 
-/// The same light, as the tracer sees it: 1 W.
+/// The same lamp as the tracer uses: 1 W.
 PathScene traced(const Analogue::Scene& from) {
     PathScene scene({{from.water.absorption, from.water.scattering}}, from.water.g);
     const Analogue::Optics& peak = from.cloud.peak;
-    // Linear between knots a fortieth of sigma apart: off by 1e-4 of the peak at most.
+    // Knots a fortieth of sigma apart, linear in between, are off by 1e-4 of the peak at most.
     scene.set_field(std::make_unique<GaussianField>(from.cloud.center, from.cloud.sigma, 1.0,
                                                     0.05 * from.cloud.sigma),
                     {{peak.absorption, peak.scattering}}, peak.g);
@@ -71,7 +71,7 @@ std::vector<TermSums> traced_fluence(const PathScene& scene, const Analogue::Sph
     return run_batches(batches, scene.band_count(), seed, make_batch);
 }
 
-/// By kind of path, as counted by photons in independent batches.
+/// Photons counted in independent batches, by kind of path.
 std::vector<Analogue::Fluence> counted_fluence(const Analogue::Scene& scene, std::size_t batches,
                                                int photons) {
     std::vector<Analogue::Fluence> counts(batches);
@@ -89,7 +89,7 @@ void compare(const Analogue::Scene& scene, int photons, int directions) {
         const auto sums =
             traced_fluence(tracer_scene, scene.detectors[i], k_batches, directions, 100 + i);
         const std::string where = "detector " + std::to_string(i);
-        // (s, r) or, for -1, any.
+        // (s, r); -1 matches any number
         const auto add = [&](int s, int r, Deviations& deviations) {
             const auto matches = [&](int scatterings, int reflections) {
                 return (s < 0 || std::min(scatterings, Analogue::k_scatterings - 1) == s) &&

@@ -10,15 +10,15 @@
 namespace uw::test {
 namespace {
 
-// The transfer function 1 / (1 + k / k_knee), which falls over many octaves as those of water do.
+// The transfer function 1 / (1 + k / k_knee), which falls over many octaves, as that of water does.
 constexpr double k_knee = 20, k_pixel = 0.005;
 
 double transfer_at(double k) {
     return 1 / (1 + k / k_knee);
 }
 
-// How bright a step is at a distance from its edge [pixels], as a mean over surfaces' pixels and
-// the image's: 1/2 + 1/pi int_0^inf H(k) sin(k x) / k sinc(k / 2)^2 dk, by the midpoint rule.
+// The brightness of a step at a distance from its edge [pixels], averaged over the surface's pixels
+// and the image's: 1/2 + 1/pi int_0^inf H(k) sin(k x) / k sinc(k / 2)^2 dk, by the midpoint rule.
 double step_at(double x) {
     double sum = 0.5;
     constexpr double k_least = 1e-4, k_most = 1e4, k_growth = 1.0005;
@@ -40,7 +40,7 @@ TEST(BlurFit, BlursAnEdgeAsTheTransferFunctionDoes) {
     const BlurFit fit(levels, k_pixel);
     std::vector<double> weights(static_cast<std::size_t>(levels));
     fit.fit(transfer, weights);
-    // Wherever the edge lies relative to the coarser levels' pixels.
+    // The edge has several positions relative to the pixels of the coarser levels.
     for (const int edge : {1024, 1025, 1027, 1030}) {
         BlurPyramid pyramid;
         pyramid.begin(k_size, 1);
@@ -52,9 +52,10 @@ TEST(BlurFit, BlursAnEdgeAsTheTransferFunctionDoes) {
         }
         const Grid2D<float>& blurred = pyramid.sum();
         for (const int i : {-40, -12, -5, -2, -1, 0, 1, 4, 11, 39})
-            // A share of the step, for what coarse pixels show of frequencies beyond theirs.
+            // The tolerance is a fraction of the step, as coarse pixels alias frequencies beyond
+            // theirs.
             EXPECT_NEAR(blurred(edge + i, 0), step_at(i + 0.5), 0.01) << edge << " " << i;
-        // The step from pixel to pixel, which is the sharpest there is: a tenth steeper where the
+        // The slope from pixel to pixel, which is steepest at the edge: by a tenth more where the
         // edge is one of all coarser pixels.
         EXPECT_NEAR(blurred(edge, 0) - blurred(edge - 1, 0), 2 * step_at(0.5) - 1,
                     0.12 * (2 * step_at(0.5) - 1))
@@ -62,16 +63,16 @@ TEST(BlurFit, BlursAnEdgeAsTheTransferFunctionDoes) {
     }
 }
 
-TEST(BlurFit, TakesTheLastFrequencyForThoseBeyondTheTable) {
+TEST(BlurFit, UsesTheLastFrequencyBeyondTheTable) {
     const double last = PointSpread::frequency(PointSpread::k_frequencies - 1);
     for (const double pixel : {2.5 / last, 1 / last, 0.3 / last}) {
         constexpr int k_levels = 3;
-        constexpr float k_share = 0.7F;
+        constexpr float k_fraction = 0.7F;
         PointSpread::Transfer transfer;
-        transfer.fill(k_share);
+        transfer.fill(k_fraction);
         std::array<double, k_levels> weights{};
         BlurFit(k_levels, pixel).fit(transfer, weights);
-        // Where a surface is even, it shows this share of its light.
+        // A uniform surface has this fraction of its light in the blur.
         EXPECT_NEAR(weights[0] + weights[1] + weights[2], 0.7, 0.01) << pixel * last;
     }
 }

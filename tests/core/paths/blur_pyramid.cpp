@@ -18,15 +18,15 @@ TEST(BlurPyramid, LeavesEvenImagesEven) {
             Grid2D<float> image(width, height, 1.5F);
             pyramid.add(level, image);
         }
-        // Rounding to float.
+        // The tolerance is the rounding to float.
         const double sum = 1.5 * levels;
         for (const float value : pyramid.sum())
             EXPECT_NEAR(static_cast<double>(value), sum, 1e-5 * sum);
     }
 }
 
-// The light of a point far from the edges is kept, its centre stays, and its variance is that of
-// the level, wherever the point lies relative to the coarser levels' pixels.
+// A point of light far from the edges keeps its light and its centre, and gets the variance of the
+// level, wherever it lies relative to the pixels of the coarser levels.
 TEST(BlurPyramid, BlursByTheWidthOfItsLevel) {
     constexpr int k_size = 192;
     for (int level = 0; level <= 4; ++level) {
@@ -49,7 +49,7 @@ TEST(BlurPyramid, BlursByTheWidthOfItsLevel) {
             }
             EXPECT_NEAR(sum, 1, 1e-5);
             // The kernel is symmetric about the middle of the coarse pixels' corners, which are
-            // linear B-splines at every step: they keep the centre exactly.
+            // linear B-splines at every step, so that the centre is kept exactly.
             EXPECT_NEAR(mean, 0, 1e-4);
             const double variance = BlurPyramid::deviation(level) * BlurPyramid::deviation(level);
             EXPECT_NEAR(square, variance, 1e-4 * std::max(variance, 1.0)) << level << " " << x;
@@ -57,7 +57,8 @@ TEST(BlurPyramid, BlursByTheWidthOfItsLevel) {
     }
 }
 
-// The transfer of a wave is averaged over its positions relative to the coarser levels' pixels.
+// The transfer of a wave is averaged over its positions relative to the pixels of the coarser
+// levels.
 TEST(BlurPyramid, HasTheTransferFunctionOfItsLevel) {
     constexpr int k_size = 256;
     for (int level = 0; level <= 4; ++level) {
@@ -71,7 +72,7 @@ TEST(BlurPyramid, HasTheTransferFunctionOfItsLevel) {
             const Grid2D<float>& blurred = pyramid.sum();
             double sum = 0;
             for (int i = 64; i < 192; ++i) sum += 2 * blurred(i, 0) * std::cos(omega * i) / 128;
-            // The part looked at holds no whole number of waves.
+            // The part that is evaluated does not contain a whole number of waves.
             EXPECT_NEAR(sum, BlurPyramid::transfer(level, omega), 0.03) << level << " " << waves;
         }
     }

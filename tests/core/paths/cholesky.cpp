@@ -27,7 +27,7 @@ TEST(CholeskyFactor, RefusesWhatIsSingularOrIndefinite) {
     EXPECT_FALSE(cholesky.factor(std::vector<double>{1, 0, 1, 1}, 2, 1e-9));
     EXPECT_FALSE(cholesky.factor(std::vector<double>{1, 0, 2, 1}, 2, 1e-9));
     EXPECT_FALSE(cholesky.factor(std::vector<double>{0}, 1, 1e-9));
-    // 1e-4 of the last element is left.
+    // Elimination leaves 1e-4 of the last element.
     const std::vector<double> nearly{1, 0, 1, 1.0001};
     EXPECT_FALSE(cholesky.factor(nearly, 2, 1e-3));
     EXPECT_TRUE(cholesky.factor(nearly, 2, 1e-5));

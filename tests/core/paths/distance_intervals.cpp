@@ -42,7 +42,7 @@ TEST_F(Intervals, CoverEveryDistanceOnce) {
     }
 }
 
-TEST_F(Intervals, ShareTheLightOfGlowingWater) {
+TEST_F(Intervals, DivideTheLightOfAUniformSource) {
     const DistanceIntervals all = intervals();
     const Spectrum c = renderer_.assembled().water.medium.uniform.attenuation();
     for (std::size_t i = 0; i < 10; ++i) {
@@ -50,7 +50,8 @@ TEST_F(Intervals, ShareTheLightOfGlowingWater) {
             EXPECT_EQ(all.fraction_before(i, b, all.begin(i)), 0);
             EXPECT_EQ(all.fraction_before(i, b, all.end(i)), 1);
             const double s = 0.3 * all.begin(i) + 0.7 * all.end(i);
-            // int e^(-c s) ds up to s, over the whole; 1e-10: rounding of the differences.
+            // int e^(-c s) ds up to s, relative to the whole interval; 1e-10 allows for the
+            // rounding of the differences.
             const double up_to = std::exp(-c[b] * all.begin(i)) - std::exp(-c[b] * s);
             const double whole = std::exp(-c[b] * all.begin(i)) - std::exp(-c[b] * all.end(i));
             EXPECT_NEAR(all.fraction_before(i, b, s), up_to / whole, 1e-10);

@@ -1,5 +1,5 @@
 // ctest labels: analytic statistical
-// The sum of light that lamps emit.
+// Conservation of energy: the sum of the light that lamps emit.
 #include <gtest/gtest.h>
 
 #include "tests/support/paths/closed_form_surfaces.h"
@@ -8,8 +8,8 @@
 namespace uw::test {
 namespace {
 
-// A lamp in a black sphere of absorbing and scattering water: what is scattered n times is
-// absorbed, scattered again or arrives at the wall.
+// A lamp in a black sphere of absorbing and scattering water: light scattered n times is absorbed,
+// scattered again, or arrives at the wall.
 TEST(PathEnergy, ScatteredLightIsAbsorbedOrArrives) {
     constexpr double pi = std::numbers::pi, k_radius = 2;
     PathScene scene({{0.2, 0.6}, {0.01, 1.5}}, 0.8);
@@ -19,7 +19,7 @@ TEST(PathEnergy, ScatteredLightIsAbsorbedOrArrives) {
     scene.add_lamp({0.4, -0.3, 0.6}, 1);
     const PathTracer tracer(scene.lit());
 
-    // Fluence over the volume, and irradiance over the wall's area.
+    // Fluence integrated over the volume, and irradiance over the wall's area.
     constexpr std::size_t k_batches = 32;
     constexpr int k_points = 1 << 10;
     constexpr std::uint32_t k_paths = 8;
@@ -65,7 +65,7 @@ TEST(PathEnergy, ScatteredLightIsAbsorbedOrArrives) {
                 return sums.sum(b, [&](int s, int, bool) { return s >= first && s <= last; });
             });
         };
-        // Power that the lamp's light leaves behind on its way to the wall, of 4 pi W.
+        // The part of the lamp's 4 pi W that is scattered before it reaches the wall.
         double once = 0;
         constexpr int k_steps = 200;
         for (int i = 0; i < k_steps; ++i)
@@ -73,8 +73,8 @@ TEST(PathEnergy, ScatteredLightIsAbsorbedOrArrives) {
                 const double z = 2 * (i + 0.5) / k_steps - 1, phi = 2 * pi * (j + 0.5) / k_steps;
                 const Vector3 w(std::sqrt(1 - z * z) * std::cos(phi),
                                 std::sqrt(1 - z * z) * std::sin(phi), z);
-                const double way = scene.surfaces->hit_distance({scene.lamps[0].position(), w});
-                once += 4 * pi / (k_steps * k_steps) * scattering / c * (1 - std::exp(-c * way));
+                const double length = scene.surfaces->hit_distance({scene.lamps[0].position(), w});
+                once += 4 * pi / (k_steps * k_steps) * scattering / c * (1 - std::exp(-c * length));
             }
         const auto add = [&](const std::string& what, double in, double in_error, double out,
                              double out_error) {

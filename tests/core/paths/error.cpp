@@ -1,6 +1,6 @@
 // ctest labels: statistical slow
-// Standard errors of means of light paths: whether they are what they state, and whether no single
-// path upsets them.
+// Whether the standard errors of means of light paths are as stated, and whether no single path
+// dominates a mean (fireflies).
 #include <gtest/gtest.h>
 
 #include "tests/support/paths/path_tables.h"
@@ -11,12 +11,12 @@ namespace uw::test {
 namespace {
 
 constexpr std::size_t k_seeds = 200, k_batches_each = 32;  // for each estimate
-// A thousand, for few paths of a dark pixel are scattered towards the lit box beside it.
+// A dark pixel needs a thousand paths, as few of them are scattered towards the lit box beside it.
 constexpr std::uint32_t k_paths_of_pixel = 1 << 10;
 constexpr std::size_t k_seeds_of_pixel = 100;
 
-/// Over many seeds, the deviation of a mean of k_batches_each batches from the truth in units of
-/// its own stated error follows Student's t with k_batches_each - 1 degrees of freedom.
+/// Over many seeds, the deviation of a mean of k_batches_each batches from the truth, in units of
+/// its own stated error, follows Student's t with k_batches_each - 1 degrees of freedom.
 void expect_honest(const std::string& what, const std::vector<BatchMeans>& runs,
                    std::optional<double> exact) {
     double truth = 0;
@@ -35,13 +35,13 @@ void expect_honest(const std::string& what, const std::vector<BatchMeans>& runs,
     const double spread = variance * std::sqrt((kurtosis - 1) / static_cast<double>(runs.size()));
     std::cout << what << ": variance of the deviation " << square << ", expected " << variance
               << " +- " << spread << "; mean " << sum << "\n";
-    // Three of its own standard errors; batches with a long tail make it somewhat larger.
+    // Three times its own standard error; batches with a long tail make it somewhat larger.
     EXPECT_NEAR(square, variance, 3 * spread) << what;
     EXPECT_NEAR(sum, 0, exact ? 3 * std::sqrt(variance / static_cast<double>(runs.size())) : 0.2)
         << what;
 }
 
-TEST(PathErrors, AreStatedRightAgainstTheTable) {
+TEST(PathErrors, AreStatedCorrectlyAgainstTheTable) {
     for (const TableRow& row : read_path_table("point_lamp_hg09_albedo08_radiance.csv", false)) {
         if (row.r != 1 || (row.psi_degrees != 2 && row.psi_degrees != 30)) continue;
         const PathScene scene = table_scene({0.8}, 0.9);
@@ -55,7 +55,7 @@ TEST(PathErrors, AreStatedRightAgainstTheTable) {
     }
 }
 
-TEST(PathErrors, AreStatedRightInTheImage) {
+TEST(PathErrors, AreStatedCorrectlyInTheImage) {
     const PathScene scene = s1_scene();
     struct Pixel {
         const char* what;
@@ -78,8 +78,8 @@ TEST(PathErrors, AreStatedRightInTheImage) {
     }
 }
 
-// Image means relative to single scattering by 12, 12 and 58 million PlainPaths, with other seeds
-// than in plain_image.cpp, where every kind of light is held to them.
+// Image means relative to single scattering, from 12, 12 and 58 million PlainPaths with other seeds
+// than in plain_image.cpp, which compares every kind of light with them.
 constexpr std::array k_ratios{1.6603, 2.3738, 2.7504}, k_ratio_errors{0.0017, 0.0027, 0.0036};
 
 TEST(PathErrors, NoPathOfFiveMillionOutweighsTheImage) {
@@ -107,10 +107,11 @@ TEST(PathErrors, NoPathOfFiveMillionOutweighsTheImage) {
                   << ", RMSE of one path "
                   << more.error() * std::sqrt(double{k_parts} * k_rays) / all.mean() << "\n";
         ratios.add("band " + std::to_string(band), ratio, k_ratios[band], k_ratio_errors[band]);
-        // The attained, 122, and some room: bright paths are those of bright pixels, ten times the
-        // mean, that see the lit box again through the water before it.
+        // 122 as measured, and some room: bright paths are those of bright pixels, ten times the
+        // mean, that meet the lit box again through the water in front of it.
         EXPECT_LT(largest, 200 * all.mean()) << "band " << band;
-        // 3 for normal batches, +- sqrt(24 / 500); single paths with long tails would show.
+        // 3 for normally distributed batches, +- sqrt(24 / 500); single paths with long tails would
+        // show.
         EXPECT_LT(more.kurtosis(), 3 + 5 * std::sqrt(24.0 / k_parts)) << "band " << band;
     }
     ratios.expect_within_errors();

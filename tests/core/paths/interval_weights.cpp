@@ -44,15 +44,16 @@ TEST_F(IntervalWeightsTest, OfUniformWaterHaveAClosedForm) {
     std::vector<float> found;
     weights.find(ray_, found);
     ASSERT_EQ(found.size(), intervals_->count() * 2);
-    for (const double reach : {0.7, 2.9, k_far}) {
+    for (const double max_distance : {0.7, 2.9, k_far}) {
         for (std::size_t i = 0; i < intervals_->count(); ++i) {
-            const double end = std::min(reach, intervals_->end(i));
-            const double begin = std::min(reach, intervals_->begin(i));
+            const double end = std::min(max_distance, intervals_->end(i));
+            const double begin = std::min(max_distance, intervals_->begin(i));
             for (const std::size_t b : {0U, 1U}) {
                 const double c = absorption(b) + scattering(b);
                 const double truth =
                     scattering(b) / c * (std::exp(-c * begin) - std::exp(-c * end));
-                EXPECT_NEAR(found[i * 2 + b] * intervals_->fraction_before(i, b, reach), truth,
+                EXPECT_NEAR(found[i * 2 + b] * intervals_->fraction_before(i, b, max_distance),
+                            truth,
                             1e-6 * truth + 1e-12)
                     << i;  // single precision
             }
@@ -83,8 +84,9 @@ TEST_F(IntervalWeightsTest, OfACloudAgreeWithQuadrature) {
                 truth += (scattering(b) + per_ppm().scattering[0][b] * concentration) *
                          std::exp(-depth) * (end - begin) / k_steps;
             }
-            // Knots a twentieth of the cloud's sigma apart, linear in between: h^2 / 8 of its
-            // curvature; of the columns in front, too, which is more where little light is left.
+            // Linear interpolation between knots a twentieth of the cloud's sigma apart is off by
+            // h^2 / 8 of the curvature; so are the columns in front, which matters more where
+            // little light remains.
             EXPECT_NEAR(found[i * 2 + b], truth, 2e-3 * truth + 1e-6) << i << " band " << b;
         }
     }

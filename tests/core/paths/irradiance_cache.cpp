@@ -17,7 +17,8 @@ SurfaceHit hit_at(const Point3& position, const Vector3& normal) {
     return hit;
 }
 
-/// Points scattered over a square of the plane z = `z`, with two values that are linear in x and y.
+/// Adds records scattered over a square of the plane z = `z`, with two values that are linear in x
+/// and y.
 void scatter_points(double z, double normal, double offset, std::vector<IrradianceRecord>& points,
                     std::vector<float>& radiance) {
     std::mt19937 rng(7);
@@ -30,7 +31,7 @@ void scatter_points(double z, double normal, double offset, std::vector<Irradian
     }
 }
 
-class IndirectLights : public testing::Test {
+class IrradianceCaches : public testing::Test {
   protected:
     IrradianceCache light() const { return {points_, radiance_, 2}; }
 
@@ -38,20 +39,20 @@ class IndirectLights : public testing::Test {
     std::vector<float> radiance_;
 };
 
-TEST_F(IndirectLights, AreLinearBetweenThePointsAndAtEdges) {
+TEST_F(IrradianceCaches, AreLinearBetweenRecordsAndAtEdges) {
     scatter_points(0, 1, 0, points_, radiance_);
     const IrradianceCache found = light();
     std::array<double, 2> radiance{};
     for (const Point3& x : {Point3{0.13, -0.21, 0}, Point3{0.999, 0.4, 0}, Point3{-0.6, -1, 0}}) {
         found.find(hit_at(x, {0, 0, 1}), radiance);
-        // The ridge levels the plane a little: by up to 15 % of what changes over the distance
-        // between the eight nearest points, 0.1.
+        // Regularisation levels the plane a little: by up to 15 % of the change over the distance
+        // between the eight nearest records, 0.1.
         EXPECT_NEAR(radiance[0], 3 + x.x, 0.015);
         EXPECT_NEAR(radiance[1], 5 - 2 * x.y, 0.03);
     }
 }
 
-TEST_F(IndirectLights, AreThoseOfTheSideThatIsHit) {
+TEST_F(IrradianceCaches, SeparateTheSidesOfAWall) {
     scatter_points(0, 1, 0, points_, radiance_);
     scatter_points(-0.001, -1, 100, points_, radiance_);
     const IrradianceCache found = light();
@@ -62,14 +63,14 @@ TEST_F(IndirectLights, AreThoseOfTheSideThatIsHit) {
     EXPECT_NEAR(radiance[0], 103.1, 0.02);
 }
 
-TEST_F(IndirectLights, AreDarkWithoutPoints) {
+TEST_F(IrradianceCaches, AreDarkWithoutRecords) {
     std::array<double, 2> radiance{1, 1};
     light().find(hit_at({0, 0, 0}, {0, 0, 1}), radiance);
     EXPECT_EQ(radiance[0], 0);
     EXPECT_EQ(radiance[1], 0);
 }
 
-TEST_F(IndirectLights, CoverWhatIsNearAndFacesTheSameWay) {
+TEST_F(IrradianceCaches, CoverWhatIsNearAndFacesTheSameWay) {
     scatter_points(0, 1, 0, points_, radiance_);
     const IrradianceCache found = light();
     EXPECT_TRUE(found.covers(hit_at({0.5, 0.5, 0}, {0, 0, 1}), 0.1));

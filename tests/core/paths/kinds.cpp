@@ -1,5 +1,5 @@
 // ctest labels: analytic statistical
-// What the terms of paths say of themselves.
+// Whether contributions state their kind correctly.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,28 +11,29 @@
 namespace uw::test {
 namespace {
 
-/// Checks what each term says of itself.
+/// Checks what each contribution states of its kind.
 class KindCheck final : public ContributionSink {
   public:
     enum class Source { single, water, surface };
     KindCheck(Source source, double distance) : source_(source), distance_(distance) {}
-    void add(const PathContribution& term) override {
+    void add(const PathContribution& contribution) override {
         ++count;
-        EXPECT_EQ(term.lamp, 0);
-        EXPECT_EQ(term.from_water, source_ != Source::surface);
+        EXPECT_EQ(contribution.lamp, 0);
+        EXPECT_EQ(contribution.from_water, source_ != Source::surface);
         if (source_ == Source::single) {
-            EXPECT_EQ(term.scatterings, 1);
-            EXPECT_EQ(term.reflections, 0);
+            EXPECT_EQ(contribution.scatterings, 1);
+            EXPECT_EQ(contribution.reflections, 0);
         } else {
-            EXPECT_GE(term.scatterings + term.reflections, 2);
-            EXPECT_GE(source_ == Source::water ? term.scatterings : term.reflections, 1);
+            EXPECT_GE(contribution.scatterings + contribution.reflections, 2);
+            EXPECT_GE(
+                source_ == Source::water ? contribution.scatterings : contribution.reflections, 1);
         }
         if (source_ == Source::surface)
-            EXPECT_DOUBLE_EQ(term.distance, distance_);
+            EXPECT_DOUBLE_EQ(contribution.distance, distance_);
         else
-            EXPECT_LT(term.distance, distance_);
-        EXPECT_GT(term.distance, 0);
-        for (const double radiance : term.radiance) EXPECT_GE(radiance, 0);
+            EXPECT_LT(contribution.distance, distance_);
+        EXPECT_GT(contribution.distance, 0);
+        for (const double radiance : contribution.radiance) EXPECT_GE(radiance, 0);
     }
     int count = 0;
 
@@ -41,7 +42,7 @@ class KindCheck final : public ContributionSink {
     double distance_;
 };
 
-TEST(PathLaws, TermsAreOfTheKindThatTheyClaim) {
+TEST(PathLaws, ContributionsAreOfTheKindThatTheyClaim) {
     const PathScene scene = lit_scene(k_three_bands);
     const PathTracer tracer(scene.lit());
     CameraSegment segment;
@@ -60,18 +61,18 @@ TEST(PathLaws, TermsAreOfTheKindThatTheyClaim) {
     for (const KindCheck* check : {&single, &water, &surface}) EXPECT_GT(check->count, 100);
 }
 
-/// Passes on what is mirrored, times a factor for each band.
+/// Passes on mirrored contributions, times a factor for each band.
 class MirroredPart final : public ContributionSink {
   public:
     MirroredPart(ContributionSink& sums, std::span<const double> factors)
         : sums_(sums), factors_(factors) {}
-    void add(const PathContribution& term) override {
-        if (!PathTracer::is_mirrored(term)) {
+    void add(const PathContribution& contribution) override {
+        if (!PathTracer::is_mirrored(contribution)) {
             ++others;
             return;
         }
-        PathContribution scaled = term;
-        radiance_.assign(term.radiance.begin(), term.radiance.end());
+        PathContribution scaled = contribution;
+        radiance_.assign(contribution.radiance.begin(), contribution.radiance.end());
         for (std::size_t b = 0; b < radiance_.size(); ++b) radiance_[b] *= factors_[b];
         scaled.radiance = radiance_;
         sums_.add(scaled);
@@ -84,8 +85,9 @@ class MirroredPart final : public ContributionSink {
     std::vector<double> radiance_;
 };
 
-// By random numbers of their own, and with the water in front of the surface put in afterwards.
-TEST(PathLaws, WhatIsMirroredIsAPartOfTheSurfacesLight) {
+// The mirrored light is estimated with random numbers of its own, and the transmittance of the
+// water in front of the surface is applied afterwards.
+TEST(PathLaws, MirroredLightIsPartOfTheSurfacesLight) {
     const PathScene scene = lit_scene(k_three_bands);
     const PathTracer tracer(scene.lit());
     SurfaceSample sample{some_ray(), {}, 0, 0};

@@ -1,5 +1,6 @@
 // ctest labels: analytic
-// The field of a lamp that guides light paths, against tables and the laws of light.
+// The table of radiance around a lamp that guides light paths, against exact tables and
+// conservation of energy.
 #include "core/paths/lamp_radiance_table.h"
 
 #include <gtest/gtest.h>
@@ -16,14 +17,14 @@ namespace {
 
 const std::vector<BandOptics> k_clear_and_turbid{{0.8, 0.2}, {0.01, 0.99}};
 
-TEST(LampRadianceTable, IsRoughlyThatOfTheTables) {
+TEST(LampRadianceTable, ApproximatesTheExactTables) {
     const ScatteringTables tables(PathScene({{0.2, 0.8}}, 0.9).medium);
     int count = 0;
     for (const TableRow& row : read_path_table("point_lamp_hg09_albedo08_radiance.csv", false)) {
         const double h = std::tan(0.5 * row.psi_degrees * std::numbers::pi / 180);
         const LampRadianceTable& field = tables.field();
         const LampRadianceTable::Place place = field.at(row.r, 0.8);
-        // A guide may be off by a third: paths are shared out by its root.
+        // A guide may be off by a third, as the numbers of paths depend on its square root.
         EXPECT_NEAR(field.radiance(place, h) / row.total, 1, 0.35)
             << row.r << " " << row.psi_degrees;
         EXPECT_LT(field.multiple(place, h), field.radiance(place, h));
@@ -32,8 +33,8 @@ TEST(LampRadianceTable, IsRoughlyThatOfTheTables) {
     EXPECT_EQ(count, 45);
 }
 
-// Energy is lost on the way and never gained, however little the water absorbs and however far the
-// lamp is: beyond the table's end it goes on to fall.
+// Energy is lost with distance and never gained, however little the water absorbs, and also beyond
+// the table's end.
 TEST(LampRadianceTable, LosesEnergyWithDistance) {
     for (const double g : {0.0, 0.9, 0.98}) {
         const ScatteringTables tables(PathScene(k_clear_and_turbid, g).medium);

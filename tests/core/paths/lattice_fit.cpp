@@ -11,7 +11,7 @@
 namespace uw {
 namespace {
 
-/// The nodes within reach whose value is `value(dx, dy)`, where `takes_part(dx, dy)`.
+/// The nodes within the maximum radius with the value `value(dx, dy)`, where `takes_part(dx, dy)`.
 std::vector<FitNode> nodes_of(
     const std::function<double(int, int)>& value, double variance,
     const std::function<bool(int, int)>& takes_part = [](int, int) { return true; }) {
@@ -42,10 +42,10 @@ TEST(LatticeFit, FollowsAQuadric) {
     const auto value = [](int x, int y) {
         return 3 + 0.2 * x - 0.1 * y + 0.03 * x * y - 0.02 * y * y;
     };
-    // Noise so great that nothing is found to differ: the widest fit, which is exact.
+    // The noise is so great that no fits differ: the widest is taken, which is exact.
     EXPECT_NEAR(fitted(fit, nodes_of(value, 100)), 3, 1e-9);
     EXPECT_LT(fit.variance(), 100.0 / 20);  // of more than a hundred nodes
-    // A plane from one side only: extrapolated, also exactly.
+    // A plane known on one side only is extrapolated exactly.
     const auto plane = [](int x, int y) { return 3 + 0.2 * x - 0.1 * y; };
     EXPECT_NEAR(fitted(fit, nodes_of(plane, 100, [](int x, int) { return x >= 0; })), 3, 1e-9);
 }
@@ -54,23 +54,23 @@ TEST(LatticeFit, KeepsAStepThatIsGreaterThanTheNoise) {
     LatticeFit fit;
     const auto step = [](int x, int) { return x < 0 ? 10.0 : 0.0; };
     EXPECT_EQ(fitted(fit, nodes_of(step, 1e-4)), 0);
-    // Noise that is far less than what matters is left as it is.
+    // Noise far below the tolerance is not smoothed.
     EXPECT_EQ(fitted(fit, nodes_of(step, 1e-4), 100), 0);
-    // Differences within the tolerance do not matter: this step is 16 times the noise, of which a
-    // third shows in the next wider fit.
+    // Differences within the tolerance do not matter: this step is 16 times the noise, a third of
+    // which remains in the next wider fit.
     const auto low = [](int x, int) { return x < 0 ? 0.16 : 0.0; };
     EXPECT_EQ(fitted(fit, nodes_of(low, 1e-4)), 0);
     EXPECT_GT(fitted(fit, nodes_of(low, 1e-4), 0.0195), 0.01);
 }
 
-TEST(LatticeFit, ListensToNodesByTheirWeights) {
+TEST(LatticeFit, WeightsTheNodes) {
     LatticeFit fit;
-    // Every other column tells something else, and counts little.
+    // Every other column has another value and a small weight.
     const auto value = [](int x, int) { return x % 2 == 0 ? 3.0 : 100.0; };
     std::vector<FitNode> nodes = nodes_of(value, 1e4);
     for (FitNode& node : nodes)
         if (node.dx % 2 != 0) node.weight = 1e-3;
-    // About as many of either.
+    // Both have about the same total weight.
     EXPECT_NEAR(fitted(fit, nodes), 3 + 97e-3, 0.03);
 }
 
@@ -78,7 +78,8 @@ TEST(LatticeFit, StatesTheVarianceOfWhatItFits) {
     LatticeFit fit;
     std::mt19937 random(1);
     std::normal_distribution<double> noise;
-    // Decided by one set of values, applied to another: independent of each other.
+    // One set of values decides on the neighbourhood, which is applied to another: they are
+    // independent.
     double sum = 0, squares = 0, stated = 0;
     constexpr int k_trials = 2000;
     for (int trial = 0; trial < k_trials; ++trial) {
@@ -89,16 +90,17 @@ TEST(LatticeFit, StatesTheVarianceOfWhatItFits) {
         squares += value * value;
         stated += fit.variance();
     }
-    // The variance of 2000 values is known to sqrt(2 / 2000) = 3 % if they are normal; widths of
-    // the fit differ, which makes tails: four times that. The mean: 4 standard errors.
+    // The variance of 2000 values is known to sqrt(2 / 2000) = 3 % if they are normally
+    // distributed. The widths of the fits differ, which makes tails: four times that is allowed.
+    // The mean: 4 standard errors.
     EXPECT_NEAR(squares / stated, 1, 0.13);
     EXPECT_LT(std::abs(sum), 4 * std::sqrt(stated));
-    // A single node has 1, the widest fit 0.03; noise stops the fit before that in one of eight
-    // cases.
+    // The variance of a single node is 1, that of the widest fit 0.03; in one of eight cases noise
+    // stops the widening earlier.
     EXPECT_LT(stated / k_trials, 0.25);
 }
 
-TEST(LatticeFit, TakesWhatNodesThereAre) {
+TEST(LatticeFit, UsesAsManyNodesAsThereAre) {
     LatticeFit fit;
     EXPECT_TRUE(fit.fit({}, 0).empty());
     const std::vector<FitNode> one{{5, -3, 7, 1, 0}};

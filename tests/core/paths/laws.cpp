@@ -1,5 +1,5 @@
 // ctest labels: analytic statistical metamorphic
-// What holds of light whatever the water and the surfaces.
+// Laws of light that hold whatever the water and the surfaces are.
 #include <gtest/gtest.h>
 
 #include "tests/support/geometry_descs.h"
@@ -10,7 +10,7 @@
 namespace uw::test {
 namespace {
 
-/// The same concentration everywhere.
+/// A field with the same concentration everywhere.
 class ConstantField : public ConcentrationField {
   public:
     explicit ConstantField(double value) : value_(value) {}
@@ -26,7 +26,7 @@ class ConstantField : public ConcentrationField {
     void profile(const Ray&, double s_end, ConcentrationProfile& profile) const override {
         profile.constituent_count = 1;
         profile.s = {0};
-        // Knots as in a grid, as far as any light comes from.
+        // Knots as in a grid, as far as light may come from.
         for (double s = 0.5; s < std::min(s_end, 20.0); s += 0.5) profile.s.push_back(s);
         profile.s.push_back(s_end);
         profile.concentration.assign(profile.s.size(), value_);
@@ -38,7 +38,7 @@ class ConstantField : public ConcentrationField {
     double value_;
 };
 
-/// Compares two sets of batches kind by kind, in one band of each.
+/// Compares two sets of batches, kind by kind, each in one band.
 void compare_kinds(const std::vector<TermSums>& a, std::size_t band_a,
                    const std::vector<TermSums>& b, std::size_t band_b, const std::string& what,
                    Deviations& deviations) {
@@ -54,7 +54,7 @@ void compare_kinds(const std::vector<TermSums>& a, std::size_t band_a,
                     });
                 };
                 const BatchMeans first = of(a, band_a), second = of(b, band_b);
-                // Some kinds are none, and rare ones are not normally distributed.
+                // Some kinds do not occur, and rare ones are not normally distributed.
                 if (!(first.error() < 0.05 * first.mean() && second.error() < 0.05 * second.mean()))
                     continue;
                 deviations.add(what + " scatterings " + std::to_string(s) + " reflections " +
@@ -64,7 +64,7 @@ void compare_kinds(const std::vector<TermSums>& a, std::size_t band_a,
 }
 
 TEST(PathLaws, OrdersGrowAsPowersOfTheScatteringCoefficient) {
-    // c = 1/m in all bands, so that one path takes the same way for each: exact up to rounding.
+    // c = 1/m in all bands, so that one path has the same vertices for each: exact up to rounding.
     PathScene scene({{1 - 1e-6, 1e-6}, {0.98, 0.02}, {0.4, 0.6}}, 0.9);
     scene.add_lamp(k_lamp, 1);
     const auto batches = ray_batches(scene, some_ray(), 1, 4);
@@ -77,14 +77,14 @@ TEST(PathLaws, OrdersGrowAsPowersOfTheScatteringCoefficient) {
         }
 }
 
-TEST(PathLaws, WaterThatScattersNothingBringsNothing) {
+TEST(PathLaws, WaterWithoutScatteringAddsNoLight) {
     const PathScene scene = lit_scene({{0.3, 0}, {0.1, 0}});
     for (const TermSums& sums : ray_batches(scene, some_ray(), 1, 4))
         for (const std::size_t band : {0U, 1U})
             EXPECT_EQ(sums.sum(band, [](int s, int, bool water) { return s > 0 || water; }), 0);
 }
 
-TEST(PathLaws, LightOfLampsIsThatOfTheirSum) {
+TEST(PathLaws, LightIsTheSumOverLamps) {
     const PathScene one = lit_scene(k_three_bands);
     PathScene two = lit_scene(k_three_bands);
     two.lamps.clear();
@@ -96,9 +96,9 @@ TEST(PathLaws, LightOfLampsIsThatOfTheirSum) {
     deviations.expect_within_errors();
 }
 
-// Paths see one point of a lamp with an extent at a time (LampView); here 3 of one and 2 of
-// another.
-TEST(PathLaws, ALampsLightIsThatOfItsPoints) {
+// A path sees one point of an area lamp at a time (LampView): here one of three of the first lamp
+// and one of two of the second.
+TEST(PathLaws, LightOfAnAreaLampIsTheSumOverItsPoints) {
     const std::vector<Point3> points{
         k_lamp, {0.8, -0.7, 0.1}, {1.2, -0.4, -0.1}, {-0.7, 0.6, 0.5}, {-0.9, 0.5, 0.4}};
     const std::vector<double> intensities{0.3, 0.3, 0.3, 0.2, 0.2};
@@ -110,7 +110,7 @@ TEST(PathLaws, ALampsLightIsThatOfItsPoints) {
     for (std::size_t i = 0; i < points.size(); ++i)
         together.lamps.push_back(
             apart.lamps[i].emitter(i < 3 ? 0 : 1, points[i], i < 3 ? 1.0 / 3 : 0.5));
-    // The shares have dimmed them once more.
+    // emitter() has dimmed them once more.
     for (std::size_t i = 0; i < points.size(); ++i)
         together.lamps[i] = together.lamps[i].brightened(i < 3 ? 3 : 2);
     ASSERT_EQ(together.lit().lamp_count(), 2U);
@@ -137,7 +137,7 @@ TEST(PathLaws, EachLampHasItsOwnLight) {
     ASSERT_TRUE(both.surfaces->closest_hit(ray, k_far, hit));
     CameraSegment segment;
     tracer.begin(ray, &hit, {}, segment);
-    std::array<BatchMeans, 2> shares;
+    std::array<BatchMeans, 2> by_lamp;
     constexpr std::uint32_t k_paths = 1 << 10;
     for (std::uint64_t n = 0; n < 32; ++n) {
         PerLamp terms;
@@ -148,7 +148,7 @@ TEST(PathLaws, EachLampHasItsOwnLight) {
             trace_scattered(tracer, segment, water, terms);
             tracer.trace_surface(segment, surface, terms);
         }
-        for (const std::size_t lamp : {0U, 1U}) shares[lamp].add(terms.sums[lamp] / k_paths);
+        for (const std::size_t lamp : {0U, 1U}) by_lamp[lamp].add(terms.sums[lamp] / k_paths);
     }
     Deviations deviations;
     for (const std::size_t lamp : {0U, 1U}) {
@@ -157,15 +157,15 @@ TEST(PathLaws, EachLampHasItsOwnLight) {
         alone.lamps.push_back(both.lamps[lamp].emitter(0, both.lamps[lamp].position(), 1));
         const BatchMeans truth = means_of(ray_batches(alone, ray, 5 + lamp),
                                           [](const TermSums& sums) { return sums.total(0); });
-        deviations.add("lamp", shares[lamp], truth.mean(), truth.error());
+        deviations.add("lamp", by_lamp[lamp], truth.mean(), truth.error());
     }
     deviations.expect_within_errors();
 }
 
-TEST(PathLaws, BandsAreThoseOfRunsOfTheirOwn) {
-    // The densities of distance are mixed over bands: those of clear and turbid water differ most.
+TEST(PathLaws, BandsAgreeWithRunsOfASingleBand) {
+    // The pdf of distances is a mixture over the bands: clear and turbid water differ most.
     const std::vector<BandOptics> bands{{0.35, 0.20}, {0.08, 0.22}, {0.5, 1.5}};
-    // Paths of three bands seldom go where the turbid one has its light.
+    // Paths of three bands seldom go where the turbid band has its light.
     const auto together = ray_batches(lit_scene(bands), some_ray(), 1, 32, 1 << 14);
     Deviations deviations;
     for (std::size_t b = 0; b < bands.size(); ++b)
@@ -175,18 +175,18 @@ TEST(PathLaws, BandsAreThoseOfRunsOfTheirOwn) {
     deviations.expect_within_errors();
 }
 
-TEST(PathLaws, AFieldOfOneConcentrationIsUniformWater) {
+TEST(PathLaws, AConstantFieldIsUniformWater) {
     const auto uniform = ray_batches(lit_scene(k_three_bands), some_ray(), 1);
-    // All of the water's optics from the field, and half of them.
-    for (const double share : {1.0, 0.5}) {
+    // All of the water's optical properties come from the field, or half of them.
+    for (const double fraction : {1.0, 0.5}) {
         const auto scaled = [&](double factor) {
             std::vector<BandOptics> bands = k_three_bands;
             for (BandOptics& band : bands)
                 band = {factor * band.absorption, factor * band.scattering};
             return bands;
         };
-        PathScene scene = lit_scene(scaled(1 - share));
-        scene.set_field(std::make_unique<ConstantField>(0.25), scaled(4 * share), 0.9);
+        PathScene scene = lit_scene(scaled(1 - fraction));
+        scene.set_field(std::make_unique<ConstantField>(0.25), scaled(4 * fraction), 0.9);
         Deviations deviations;
         const auto field = ray_batches(scene, some_ray(), 2);
         for (std::size_t b = 0; b < 3; ++b)

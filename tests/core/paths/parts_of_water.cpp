@@ -1,5 +1,5 @@
 // ctest labels: analytic statistical
-// The two parts of the water's light: that of lit surfaces, and that of the water alone.
+// The two parts of the light of the water: that of lit surfaces, and that of the water alone.
 #include <gtest/gtest.h>
 
 #include "core/paths/irradiance_cache.h"
@@ -11,8 +11,8 @@
 namespace uw::test {
 namespace {
 
-// Where everything is as bright as 1, the light on the way to a surface replaces what is scattered
-// out of the ray: 1 - e^-tau.
+// Where the radiance is 1 everywhere, the light added along the segment to a surface replaces what
+// is scattered out of the ray: 1 - e^-tau.
 TEST(LitSurfaces, FillTheWaterOfAWhiteFurnace) {
     PathScene scene({{0, 0.3}, {0, 1.0}, {0, 2.0}}, 0.8);
     ClosedFormSurfaces::Material glowing{{0.5, 0.5, 0.2}, {}};
@@ -22,7 +22,7 @@ TEST(LitSurfaces, FillTheWaterOfAWhiteFurnace) {
     room->add_sphere({0.4, 0.3, 1}, 0.4, glowing);
     scene.surfaces = std::move(room);
     const PathTracer tracer(scene.lit());
-    // What a white surface reflects.
+    // The radiance that a white surface reflects.
     const IrradianceCache indirect({{{0, 0, 0}, {0, 0, 1}},
                                     {{0, 0, 0}, {0, 0, -1}},
                                     {{0, 0, 0}, {0, 1, 0}},
@@ -54,8 +54,9 @@ TEST(LitSurfaces, FillTheWaterOfAWhiteFurnace) {
     deviations.expect_errors_below(0.01);
 }
 
-// A small thing far away in water that absorbs nothing: most paths never meet it, and all end.
-TEST(LitSurfaces, AreLookedForByPathsThatEnd) {
+// A small sphere far away in water that absorbs nothing: most paths never meet it, and all must
+// end.
+TEST(LitSurfaces, AreSoughtByPathsThatEnd) {
     PathScene scene({{0, 1}}, 0);
     auto thing = std::make_unique<ClosedFormSurfaces>();
     thing->add_sphere({0, 0, 30}, 0.1, {{0.5}, {.emission = {1}}});
@@ -69,12 +70,12 @@ TEST(LitSurfaces, AreLookedForByPathsThatEnd) {
         PathRandom random(1, i);
         tracer.trace_lit_surfaces(segment, indirect, random, sums);
     }
-    // Nothing is brighter than the thing, which all paths together may see once each.
+    // The radiance is at most that of the sphere, which each path may meet once.
     EXPECT_GE(sums.total(0), 0);
     EXPECT_LT(sums.total(0), 2000);
 }
 
-// No other light of the water has met no surface.
+// The rest of the water's light has no reflection in its path.
 TEST(WaterAlone, IsWhatNoSurfaceReflects) {
     const PathScene scene = lit_scene(k_three_bands);
     const PathTracer tracer(scene.lit());

@@ -1,5 +1,5 @@
 // ctest labels: statistical slow
-// The image of S1 in the mean, kind of light by kind, against paths as in a textbook.
+// The image means of S1 by kind of light, against a textbook path tracer.
 #include <gtest/gtest.h>
 
 #include "tests/support/paths/s1_image.h"

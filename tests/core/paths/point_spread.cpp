@@ -16,7 +16,7 @@ namespace {
 
 constexpr double k_g = 0.9, k_farthest = 3;
 
-/// Water of one Henyey-Greenstein phase function.
+/// Water with a Henyey-Greenstein phase function.
 class PointSpreads : public testing::Test {
   protected:
     PointSpreads() {
@@ -42,9 +42,9 @@ class PointSpreads : public testing::Test {
     Medium medium_ = hg_medium(k_g, {0.1, 0.1}, {0.2, 1});
 };
 
-// b int_0^T p^(k (T - s) / T) ds by the midpoint rule, b T = `depth`, with Bessel's function itself
-// and p up to 1 rad, beyond which no image is formed. In the square of sqrt(psi) points are dense
-// at the peak of p.
+// b int_0^T p^(k (T - s) / T) ds by the midpoint rule with b T = `depth`, with the Bessel function
+// itself and p up to 1 rad, beyond which no image is formed. Points at equal steps of sqrt(psi) are
+// dense at the peak of p.
 double exponent_of(double depth, double k) {
     constexpr int k_angles = 2000, k_places = 60;
     const auto phase = henyey_greenstein(k_g);
@@ -68,25 +68,26 @@ TEST_F(PointSpreads, HaveTheTransferFunctionOfSmallAngles) {
         for (const std::size_t i : {8U, 20U, 24U, 28U, 32U, 36U, 40U, 48U}) {
             const double k = PointSpread::frequency(i);
             const double exponent = exponent_of(b(band) * k_farthest, k);
-            // The tolerance is a share of the whole, at frequencies a quarter of an octave apart
-            // and four places in each interval.
+            // The tolerance is a fraction of the whole, for frequencies a quarter of an octave
+            // apart and four nodes in each interval.
             EXPECT_NEAR(transfer(spread, 0, band, last, i), std::expm1(exponent), 0.002 * all)
                 << "k " << k << ", band " << band;
         }
     }
 }
 
-// Of a phase function that grows for ever towards its forward direction a third may lie below a
-// hundred thousandth of a radian. At the least frequency the transfer function has all of what is
-// scattered by less than 1 rad.
-TEST_F(PointSpreads, HoldTheSteepestForwardPeaks) {
+// If a phase function diverges in its forward direction, a third of the scattering may be below
+// 1e-5 rad. At the lowest frequency the transfer function contains everything that is scattered by
+// less than 1 rad.
+TEST_F(PointSpreads, ContainTheSteepestForwardPeaks) {
     const double n = 1.05;
     for (const double mu : {3.1, 3.5835, 4.5}) {
         medium_.phase_functions = {fournier_forand(n, mu)};
         const PointSpread spread(medium_, *intervals_, k_farthest);
-        // In steps of the share of the scattering in closed form (Fournier and Jonasz 1999).
+        // Integrated by steps of the cumulative scattering in closed form (Fournier and Jonasz
+        // 1999).
         const double nu = (3 - mu) / 2, d180 = 4 / (3 * (n - 1) * (n - 1));
-        const auto share_below = [&](double psi) {
+        const auto fraction_below = [&](double psi) {
             const double s = std::sin(psi / 2), d = d180 * s * s;
             return ((1 - std::pow(d, nu + 1)) - (1 - std::pow(d, nu)) * s * s) /
                        ((1 - d) * std::pow(d, nu)) +
@@ -94,14 +95,15 @@ TEST_F(PointSpreads, HoldTheSteepestForwardPeaks) {
                        std::cos(psi) * std::sin(psi) * std::sin(psi);
         };
         constexpr int k_steps = 2001;
-        double small_angles = share_below(1e-6);
+        double small_angles = fraction_below(1e-6);
         for (int i = 0; i < k_steps; ++i) {
             const double begin = std::pow(1e-6, 1 - static_cast<double>(i) / k_steps);
             const double end = std::pow(1e-6, 1 - static_cast<double>(i + 1) / k_steps);
             const double middle = std::sqrt(begin * end);
-            small_angles += (share_below(end) - share_below(begin)) * middle / std::sin(middle);
+            small_angles +=
+                (fraction_below(end) - fraction_below(begin)) * middle / std::sin(middle);
         }
-        EXPECT_GT(share_below(1e-5), mu < 3.2 ? 0.3 : 0);
+        EXPECT_GT(fraction_below(1e-5), mu < 3.2 ? 0.3 : 0);
         const std::size_t last = spread.distances().size() - 1;
         for (const std::size_t band : {0U, 1U}) {
             const double truth = std::expm1(b(band) * k_farthest * small_angles);
@@ -110,8 +112,9 @@ TEST_F(PointSpreads, HoldTheSteepestForwardPeaks) {
     }
 }
 
-// From any distance on it is that of the water between there and the surface, times what the water
-// in front of it does not add: exp(x_1 + x_2) - 1 = (exp(x_1) - 1) exp(x_2) + (exp(x_2) - 1).
+// The sum of the intervals from any distance on is the transfer function of the water from there to
+// the surface, times that of the water in front of it: exp(x_1 + x_2) - 1 = (exp(x_1) - 1) exp(x_2)
+// + (exp(x_2) - 1).
 TEST_F(PointSpreads, SplitLightByTheScatteringNearestToTheCamera) {
     const PointSpread spread(medium_, *intervals_, k_farthest);
     const std::size_t last = spread.distances().size() - 1;

@@ -1,7 +1,7 @@
 // ctest labels: analytic statistical slow
-// Light scattered twice, with a black box that casts a shadow, against a four-dimensional
-// quadrature: along the camera's ray, over the directions there, and along each of those in the
-// angle of the first scattering.
+// Double scattering with a black box that casts a shadow, against a four-dimensional quadrature:
+// along the camera ray, over the directions there, and along each of those in the angle of the
+// first scattering.
 #include <gtest/gtest.h>
 
 #include "tests/support/geometry_descs.h"
@@ -19,7 +19,7 @@ constexpr double k_c = k_water.absorption + k_water.scattering;
 constexpr Point3 k_lamp{1.0 * k_unit, -0.5 * k_unit, 0.3 * k_unit};
 constexpr Point3 k_min{0.3 * k_unit, -0.5 * k_unit, 0.7 * k_unit};
 constexpr Point3 k_max{0.8 * k_unit, 0.1 * k_unit, 1.2 * k_unit};
-// Where the camera's ray is divided.
+// The distances at which the camera ray is divided.
 constexpr std::array k_cuts{0.0, 1.0 * k_unit, 2.0 * k_unit, 12.0 * k_unit};
 constexpr std::size_t k_parts = k_cuts.size() - 1;
 
@@ -32,7 +32,7 @@ double phase(double cosine) {
     return (1 - k_asymmetry * k_asymmetry) / (4 * pi * q * std::sqrt(q));
 }
 
-/// Gauss's rule with four nodes on `panels` equal parts of [a, b].
+/// Gauss-Legendre quadrature with four nodes on `panels` equal parts of [a, b].
 template <class Function>
 double integrate(double a, double b, int panels, const Function& f) {
     constexpr std::array<std::array<double, 2>, 4> k_nodes{
@@ -47,8 +47,8 @@ double integrate(double a, double b, int panels, const Function& f) {
     return sum;
 }
 
-/// The box's shadow together with the box: a convex body, bounded by the faces that the lamp sees
-/// and by the planes through the lamp and the edges of what it sees.
+/// The box's shadow volume together with the box: a convex body, bounded by the faces that are
+/// visible from the lamp and by the planes through the lamp and the silhouette edges.
 class Shadow {
   public:
     Shadow() {
@@ -81,7 +81,7 @@ class Shadow {
         }
     }
 
-    /// The dark part of a ray; of no length where there is none.
+    /// The shadowed interval of a ray; empty where there is none.
     Interval on(const Ray& ray) const {
         Interval dark{0, 1e9};
         for (const Plane& plane : planes_) {
@@ -104,7 +104,7 @@ class Shadow {
     std::vector<Plane> planes_;
 };
 
-/// Where a ray enters the box.
+/// The distance at which a ray enters the box.
 double box_distance(const Ray& ray) {
     double enter = 0, leave = 1e9;
     for (int axis = 0; axis < 3; ++axis) {
@@ -116,7 +116,7 @@ double box_distance(const Ray& ray) {
     return enter < leave ? enter : 1e9;
 }
 
-/// Light of a lamp of 1 W/sr scattered once towards the origin of `ray` (docs/physics.md).
+/// Single scattering of a lamp of 1 W/sr towards the origin of `ray` (docs/physics.md).
 double once_scattered(const Ray& ray, const Shadow* shadow, int panels) {
     const Vector3 to_lamp = k_lamp - ray.origin;
     const double foot = glm::dot(to_lamp, ray.direction);
@@ -141,8 +141,8 @@ double once_scattered(const Ray& ray, const Shadow* shadow, int panels) {
     return k_water.scattering / d * sum;
 }
 
-/// Light scattered twice, the second time between two of k_cuts. `fineness` times as many nodes as
-/// the fewest that will do, in each dimension.
+/// Double scattering, the second time between two of k_cuts. `fineness` multiplies the smallest
+/// sufficient number of nodes in each dimension.
 double twice_scattered(std::size_t part, const Shadow* shadow, int fineness) {
     const Ray ray = camera_ray();
     const double foot = glm::dot(k_lamp - ray.origin, ray.direction);
@@ -151,7 +151,7 @@ double twice_scattered(std::size_t part, const Shadow* shadow, int fineness) {
         const Vector3 axis = glm::normalize(k_lamp - x);
         const Vector3 u = glm::normalize(glm::cross(axis, ray.direction)), v = glm::cross(u, axis);
         return integrate(0, pi, 8 * fineness, [&](double theta) {
-            // A periodic function but for the box: equal steps.
+            // The integrand is periodic but for the box: equal steps.
             const int steps = 32 * fineness;
             double ring = 0;
             for (int i = 0; i < steps; ++i) {
@@ -164,7 +164,7 @@ double twice_scattered(std::size_t part, const Shadow* shadow, int fineness) {
             return std::sin(theta) * ring * 2 * pi / steps;
         });
     };
-    // Along the ray in the angle in which it is seen from the lamp.
+    // Integrates along the ray in the angle at which it is seen from the lamp.
     return integrate(std::atan((k_cuts[part] - foot) / d), std::atan((k_cuts[part + 1] - foot) / d),
                      3 * fineness, [&](double angle) {
                          const double s = foot + d * std::tan(angle);
@@ -174,7 +174,7 @@ double twice_scattered(std::size_t part, const Shadow* shadow, int fineness) {
                      });
 }
 
-/// The terms of light scattered once and twice, by the part of the ray where it is scattered last.
+/// Sums contributions scattered once and twice, by the part of the ray where they leave it.
 class Parts final : public ContributionSink {
   public:
     void add(const PathContribution& term) override {
@@ -186,7 +186,7 @@ class Parts final : public ContributionSink {
     std::array<double, k_parts> once{}, twice{};
 };
 
-/// Batches of paths with or without the box.
+/// Batches of paths, with or without the box.
 std::vector<Parts> trace(bool with_box) {
     constexpr std::size_t k_batches = 64;
     constexpr std::uint32_t k_paths = 1 << 12;
@@ -210,13 +210,13 @@ std::vector<Parts> trace(bool with_box) {
     return batches;
 }
 
-/// With it, for two tests.
+/// The batches with the box, for two tests.
 const std::vector<Parts>& traced_with_box() {
     static const std::vector<Parts> k_batches = trace(true);
     return k_batches;
 }
 
-TEST(TwiceScattered, LightIsThatOfAQuadratureWithTheShadowOfABox) {
+TEST(TwiceScattered, LightAgreesWithAQuadratureInTheShadowOfABox) {
     const Shadow shadow;
     Deviations deviations;
     double all = 0, all_without_box = 0;
@@ -224,8 +224,8 @@ TEST(TwiceScattered, LightIsThatOfAQuadratureWithTheShadowOfABox) {
     for (std::size_t part = 0; part < k_parts; ++part) {
         const double rough = twice_scattered(part, &shadow, 2);
         const double truth = twice_scattered(part, &shadow, 3);
-        // With half as many nodes again in each dimension: kinks at the shadow's edges make the
-        // rules' errors fall as 1/n^2, to less than that of the difference.
+        // With half as many nodes again in each dimension: kinks at the edges of the shadow make
+        // the errors fall as 1/n^2, so that they are less than the difference.
         EXPECT_NEAR(rough, truth, 1.5e-3 * truth) << part;
         BatchMeans means;
         for (const Parts& batch : batches) means.add(batch.twice[part]);
@@ -235,11 +235,11 @@ TEST(TwiceScattered, LightIsThatOfAQuadratureWithTheShadowOfABox) {
     }
     deviations.expect_within_errors();
     deviations.expect_errors_below(0.02);
-    // The shadow takes a good part of the light, or the test would say nothing of it.
+    // The shadow removes much of the light, or else the test would prove nothing about it.
     EXPECT_LT(all, 0.9 * all_without_box);
 }
 
-TEST(TwiceScattered, LightIsThatOfAQuadratureWithoutSurfaces) {
+TEST(TwiceScattered, LightAgreesWithAQuadratureWithoutSurfaces) {
     Deviations deviations;
     const std::vector<Parts> batches = trace(false);
     for (std::size_t part = 0; part < k_parts; ++part) {
@@ -254,7 +254,7 @@ TEST(TwiceScattered, LightIsThatOfAQuadratureWithoutSurfaces) {
     deviations.expect_errors_below(0.02);
 }
 
-TEST(OnceScattered, LightIsThatOfAQuadratureWithTheShadowOfABox) {
+TEST(OnceScattered, LightAgreesWithAQuadratureInTheShadowOfABox) {
     const Shadow shadow;
     BatchMeans means;
     for (const Parts& batch : traced_with_box())

@@ -1,5 +1,5 @@
 // ctest labels: statistical metamorphic slow
-// Light paths go both ways.
+// Reciprocity of light paths.
 #include <gtest/gtest.h>
 
 #include "tests/support/gaussian_field.h"
@@ -9,8 +9,8 @@
 namespace uw::test {
 namespace {
 
-// Fluence at B from an isotropic lamp at A is that at A from the lamp at B: every path goes both
-// ways, also with a box between them that hides one from the other, and with a cloud.
+// The fluence at B from an isotropic lamp at A equals that at A from the lamp at B, as every path
+// may be reversed; also with a box between them that hides one from the other, and with a cloud.
 TEST(PathReciprocity, LampAndDetectorMayBeExchanged) {
     constexpr Point3 k_a{-0.9, 0.2, 0.7}, k_b{0.8, -0.1, 1.6};
     const auto fluence = [&](const Point3& lamp, const Point3& detector, std::uint64_t seed) {

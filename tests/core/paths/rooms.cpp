@@ -1,5 +1,5 @@
 // ctest labels: analytic statistical slow
-// Light in closed rooms, where its sum is known, and around shining surfaces.
+// Light in closed rooms, where its sum is known, and around emissive surfaces.
 #include <gtest/gtest.h>
 
 #include "tests/support/paths/closed_form_surfaces.h"
@@ -8,8 +8,8 @@
 namespace uw::test {
 namespace {
 
-// In a hollow sphere each reflection illuminates all of the wall alike: light reflected n times
-// and more is rho^n of the lamp's power, over the area. Clear water.
+// In an integrating sphere each reflection illuminates the wall uniformly: light reflected n times
+// and more is rho^n of the lamp's power, over the area. The water is clear.
 TEST(ClosedRooms, AnIntegratingSphereIsEvenlyLitByEachReflection) {
     constexpr double k_radius = 1.5, k_intensity = 2;
     PathScene scene({{0, 0}, {0, 0}}, 0.9);
@@ -21,7 +21,7 @@ TEST(ClosedRooms, AnIntegratingSphereIsEvenlyLitByEachReflection) {
     const auto batches = ray_batches(scene, {{0, 0, 0}, {0, 0.6, 0.8}}, 3);
     Deviations deviations;
     for (const std::size_t band : {0U, 1U}) {
-        // Power over area; radiance is exitance over pi.
+        // Irradiance is power over area; radiance is exitance over pi.
         const double irradiance = k_intensity / (k_radius * k_radius);
         const double rho = reflectances[band];
         for (int n = 2; n <= 3; ++n)
@@ -40,12 +40,12 @@ TEST(ClosedRooms, AnIntegratingSphereIsEvenlyLitByEachReflection) {
     deviations.expect_errors_below(0.01);
 }
 
-/// Where everything emits what it does not reflect, everything is as bright as that, whatever the
-/// lamps are that shine there so faintly that they add nothing.
+/// A white furnace: where everything emits what it does not reflect, the radiance is the same
+/// everywhere, also with lamps so faint that they add nothing.
 struct FaintLamp {
-    double intensity;  // below 0: there is none
+    double intensity;  // below 0: there is no lamp
     std::uint32_t paths;
-    double error;  // that they leave at most
+    double error;  // maximum error
 };
 class WhiteFurnaces : public testing::TestWithParam<FaintLamp> {};
 
@@ -76,24 +76,26 @@ TEST_P(WhiteFurnaces, AreWhiteInEveryDirection) {
         const auto batches =
             ray_batches(scene, ray, static_cast<std::uint64_t>(number), 32, lamp.paths);
         for (std::size_t b = 0; b < 3; ++b) {
-            const double seen = scene.surfaces->material(hit).emission[b] *
-                                std::exp(-scene.medium.uniform.attenuation(b) * hit.distance);
+            const double emitted = scene.surfaces->material(hit).emission[b] *
+                                   std::exp(-scene.medium.uniform.attenuation(b) * hit.distance);
             deviations.add(
                 "direction " + std::to_string(number) + " band " + std::to_string(b),
-                means_of(batches, [&](const TermSums& sums) { return seen + sums.total(b); }), 1);
+                means_of(batches, [&](const TermSums& sums) { return emitted + sums.total(b); }),
+                1);
         }
     }
     deviations.expect_within_errors();
     deviations.expect_errors_below(lamp.error);
 }
 
-// No lamp, one that is switched off, and a faint one, which leads paths astray.
+// No lamp, one that is switched off, and a faint one, which misguides paths.
 INSTANTIATE_TEST_SUITE_P(Lamps, WhiteFurnaces,
                          testing::Values(FaintLamp{-1, 1 << 12, 0.01}, FaintLamp{0, 1 << 10, 0.02},
                                          FaintLamp{1e-12, 1 << 8, 0.04}));
 
-// Reflectance of a rough surface in an evenly lit room: the glTF 2.0 BRDF (appendix B) written
-// again, over all directions of light. GGX without multiple reflections between facets loses some.
+// The reflectance of a rough surface under uniform light: the glTF 2.0 BRDF (appendix B) written
+// again, integrated over all directions of light. GGX without multiple reflections between facets
+// loses some energy.
 class RoughSurface {
   public:
     RoughSurface(double cosine, double roughness, double f0, double rho)
@@ -102,8 +104,8 @@ class RoughSurface {
           f0_(f0),
           rho_(rho) {}
 
-    /// Integral of BRDF times cosine, in spherical coordinates around the mirror direction, where
-    /// the lobe is: angle pi t^3.
+    /// The integral of BRDF times cosine, in spherical coordinates around the mirror direction,
+    /// where the lobe is: angle pi t^3.
     double reflectance() const {
         using std::numbers::pi;
         const Vector3 mirror(-to_camera_.x, 0, to_camera_.z), u(to_camera_.z, 0, to_camera_.x),
@@ -127,7 +129,7 @@ class RoughSurface {
         const Vector3 half = glm::normalize(to_light + to_camera_);
         const double spread = half.z * half.z * (alpha2_ - 1) + 1;
         const double d = alpha2_ / (std::numbers::pi * spread * spread);
-        const auto lambda = [&](double z) {  // Smith's, of a direction
+        const auto lambda = [&](double z) {  // Smith's function of a direction
             return 0.5 * (std::sqrt(1 + alpha2_ * (1 - z * z) / (z * z)) - 1);
         };
         const double g = 1 / (1 + lambda(to_light.z) + lambda(to_camera_.z));
@@ -147,7 +149,7 @@ TEST(ClosedRooms, AShiningSurfaceReflectsTheIntegralOfItsBrdf) {
     Deviations deviations;
     for (const Case& c : {Case{0.9, 0.3, 1, 0}, Case{0.3, 0.3, 1, 0}, Case{0.7, 0.6, 0.05, 0.6},
                           Case{0.2, 0.8, 0.9, 0.1}, Case{0.8, 1.0, 1, 0}}) {
-        // A black room that shines with 1, and in it a box that does not; clear water.
+        // A black room that emits a radiance of 1, and in it a box that does not; clear water.
         PathScene scene({{0, 0}}, 0.9);
         auto room = std::make_unique<ClosedFormSurfaces>();
         room->add_sphere({0, 0, 0}, 5, {{}, {.emission = {1}}});
@@ -161,7 +163,7 @@ TEST(ClosedRooms, AShiningSurfaceReflectsTheIntegralOfItsBrdf) {
         const double reflectance = RoughSurface(c.cosine, c.roughness, c.f0, c.rho).reflectance();
         deviations.add(what, means_of(batches, [](const TermSums& sums) { return sums.total(0); }),
                        reflectance);
-        // The same by the paths of what surfaces mirror: no lamp leads them.
+        // The same by the paths of mirrored light, which no lamp guides.
         const PathTracer tracer(scene.lit());
         SurfaceSample sample{{Point3{0.1, 0.2, 0} + 2.0 * to_camera, -to_camera}, {}, 0, 0};
         ASSERT_TRUE(scene.surfaces->closest_hit(sample.ray, k_far, sample.hit));

@@ -1,6 +1,6 @@
 // ctest labels: analytic statistical
-// Phase functions that grow for ever towards their forward direction, or nearly: what paths draw
-// and tables hold of them down to the smallest angles, and the light next to a sun's direction.
+// Phase functions that diverge in their forward direction, or nearly: the sampled directions and
+// the tables down to the smallest angles, and the light next to a sun's direction.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,10 +27,10 @@ namespace {
 
 using std::numbers::pi;
 
-/// The share of the scattering below `psi` in closed form.
+/// The fraction of the scattering below `psi` in closed form.
 struct PeakedPhase {
     std::shared_ptr<const PhaseFunction> phase;
-    std::function<double(double psi)> share_below;
+    std::function<double(double psi)> fraction_below;
 };
 
 // Fournier and Jonasz (1999), with the second term of p integrated by hand.
@@ -59,7 +59,7 @@ std::vector<PeakedPhase> peaked_phases() {
     for (const double g : {0.9, 0.99, 0.9999})
         phases.push_back(
             {henyey_greenstein(g), [=](double psi) { return henyey_greenstein_below(g, psi); }});
-    // Measured at two angles: p ~ psi^-1.9, the steepest that a table goes on with, held below
+    // Measured at two angles: p ~ psi^-1.9, the steepest that a table extrapolates, constant below
     // 1e-6.
     const SampledCurve steep{{0.1, 180}, {std::pow(1800, 1.9), 1}};
     const auto table = std::make_shared<const TabulatedPhase>(steep, "steep");
@@ -87,10 +87,10 @@ Medium medium_with(const std::shared_ptr<const PhaseFunction>& phase) {
     return medium;
 }
 
-// Tables of 64 parabolas to an octave are good to 1e-6, but for kinks. Those of 16 straight lines
+// Tables of 64 parabolas per octave are accurate to 1e-6, but for kinks. Those of 16 straight lines
 // are off by (ln 2 / 16)^2 / 12 = 1.6e-4 of the second derivative of the density by the logarithm
 // of h, which is a few times the density.
-TEST(SteepPeaks, TablesHoldAllOfTheScattering) {
+TEST(SteepPeaks, TablesContainAllOfTheScattering) {
     for (const PeakedPhase& peaked : peaked_phases()) {
         SCOPED_TRACE(peaked.phase->description());
         const Medium medium = medium_with(peaked.phase);
@@ -107,14 +107,14 @@ TEST(SteepPeaks, TablesHoldAllOfTheScattering) {
         EXPECT_NEAR(density.mass(), 1, 1e-3);
         for (double psi = 1.01e-6; psi < 3; psi *= 1.7)
             EXPECT_NEAR(density.mass_to(std::tan(psi / 2)) / density.mass(),
-                        peaked.share_below(psi), 1e-3)
+                        peaked.fraction_below(psi), 1e-3)
                 << psi;
     }
 }
 
-// Drawn directions by the angle that lies between them and the axis, in octaves, against the closed
-// form: chi-square over n bins has the deviation sqrt(2 n), of which 4 are allowed. The smallest
-// angles are those that lose digits if a direction is made of the cosine.
+// Sampled directions by their angle to the axis, in octaves, against the closed form: chi-square
+// over n bins has the standard deviation sqrt(2 n); 4 of them are allowed. The smallest angles
+// would lose digits if a direction were computed from the cosine.
 TEST(SteepPeaks, DirectionsAreDrawnDownToTheSmallestAngles) {
     constexpr int k_draws = 200000, k_max_bins = 24;
     const Vector3 axis = glm::normalize(Vector3(0.3, -0.8, 0.5));
@@ -140,11 +140,11 @@ TEST(SteepPeaks, DirectionsAreDrawnDownToTheSmallestAngles) {
         int bins = 0, count = 0;
         double expected = 0;
         for (std::size_t i = 0; i < ends.size(); ++i) {
-            const double below = peaked.share_below(ends[i]);
+            const double below = peaked.fraction_below(ends[i]);
             expected += k_draws * (below - before);
             count += counts[i];
             before = below;
-            if (expected < 20 && i + 1 < ends.size()) continue;  // rare ones together
+            if (expected < 20 && i + 1 < ends.size()) continue;  // rare ones are merged
             chi_square += (count - expected) * (count - expected) / std::max(expected, 1.0);
             ++bins;
             expected = count = 0;
@@ -153,17 +153,17 @@ TEST(SteepPeaks, DirectionsAreDrawnDownToTheSmallestAngles) {
     }
 }
 
-/// Plane irradiance below a sun in the zenith of endless water that begins to be lit at a plane, by
-/// light that was scattered and travels within an angle around the sun's direction: once, twice,
-/// and in all.
+/// Plane irradiance below a sun at the zenith of infinite water that is lit from a plane on, by
+/// scattered light that travels within an angle around the sun's direction: scattered once, twice,
+/// and all orders.
 struct NearSun {
     double absorption = 0.1, scattering = 0.5, depth = 4, within = pi / 180;
 };
 constexpr std::array<const char*, 3> k_orders{"once", "twice", "all"};
 constexpr int k_sun_batches = 32;
 
-// What is scattered once: at the angle psi the light's way back along a line of sight is even but
-// for what slanting adds to it.
+// Single scattering: at the angle psi the light path back along a line of sight has a constant
+// optical depth but for the slant.
 double scattered_once(const NearSun& sun, const PeakedPhase& peaked) {
     const double c = sun.absorption + sun.scattering;
     constexpr int k_steps = 20000;
@@ -171,7 +171,7 @@ double scattered_once(const NearSun& sun, const PeakedPhase& peaked) {
     const double growth = std::pow(sun.within / psi, 1.0 / k_steps);
     for (int i = 0; i < k_steps; ++i, psi *= growth) {
         const double end = psi * growth, middle = std::sqrt(psi * end);
-        const double below = peaked.share_below(end);
+        const double below = peaked.fraction_below(end);
         const double slant = 2 * std::pow(std::sin(middle / 2), 2);  // 1 - cos psi
         const double length = -std::expm1(-c * slant * sun.depth / (1 - slant)) / (c * slant);
         sum += (below - before) * (1 - slant) * length;
@@ -180,15 +180,15 @@ double scattered_once(const NearSun& sun, const PeakedPhase& peaked) {
     return sun.scattering * std::exp(-c * sun.depth) * sum;
 }
 
-// Photons that fly from the surface, scattered by the closed form alone. By batch.
+// Photons that start at the surface, scattered by the closed form alone, by batch.
 std::array<BatchMeans, 3> by_photons(const NearSun& sun, const PeakedPhase& peaked) {
     constexpr int k_photons = 5000, k_angles = 1 << 14;
-    // The angles of equal steps of the share, the first of which hold the peak by the same again.
-    std::vector<double> angles, shares;
+    // Angles at equal steps of the logarithm, and the fraction of the scattering below each.
+    std::vector<double> angles, fractions;
     for (int i = 0; i <= k_angles; ++i) {
         angles.push_back(i == 0 ? 0
                                 : 1e-9 * std::pow(pi / 1e-9, static_cast<double>(i) / k_angles));
-        shares.push_back(i == 0 ? 0 : i == k_angles ? 1 : peaked.share_below(angles.back()));
+        fractions.push_back(i == 0 ? 0 : i == k_angles ? 1 : peaked.fraction_below(angles.back()));
     }
     std::array<std::array<double, 3>, k_sun_batches> sums{};
     parallel_for(sums.size(), [&](std::size_t batch) {
@@ -211,8 +211,8 @@ std::array<BatchMeans, 3> by_photons(const NearSun& sun, const PeakedPhase& peak
                 if (std::abs(depth) > 40) break;
                 const double u = random.next();
                 const auto at = static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(
-                    std::ranges::upper_bound(shares, u) - shares.begin(), 1, k_angles));
-                const double t = (u - shares[at - 1]) / (shares[at] - shares[at - 1]);
+                    std::ranges::upper_bound(fractions, u) - fractions.begin(), 1, k_angles));
+                const double t = (u - fractions[at - 1]) / (fractions[at] - fractions[at - 1]);
                 const double psi = angles[at - 1] + t * (angles[at] - angles[at - 1]);
                 direction = direction_around(direction, std::tan(psi / 2), random.next());
             }
@@ -224,7 +224,7 @@ std::array<BatchMeans, 3> by_photons(const NearSun& sun, const PeakedPhase& peak
     return means;
 }
 
-// Light paths from a point, in directions drawn by the phase function around the sun.
+// Light paths from a point, in directions sampled by the phase function around the sun.
 std::array<BatchMeans, 3> by_paths(const NearSun& sun, const PeakedPhase& peaked) {
     constexpr int k_rays = 250;
     PathScene scene({{sun.absorption, sun.scattering}}, 0);
@@ -255,7 +255,7 @@ std::array<BatchMeans, 3> by_paths(const NearSun& sun, const PeakedPhase& peaked
     return means;
 }
 
-TEST(SteepPeaks, LightNextToTheSunIsAllThere) {
+TEST(SteepPeaks, LightNextToTheSunIsComplete) {
     const NearSun sun;
     Deviations deviations;
     const std::vector<PeakedPhase> phases = peaked_phases();
@@ -264,14 +264,14 @@ TEST(SteepPeaks, LightNextToTheSunIsAllThere) {
         const std::array<BatchMeans, 3> paths = by_paths(sun, peaked),
                                         photons = by_photons(sun, peaked);
         const std::string what = peaked.phase->description() + ", ";
-        // The paths' tables of phase functions are good to 1e-4 of it.
+        // The paths' tables of phase functions are accurate to 1e-4.
         const double once = scattered_once(sun, peaked);
         deviations.add(what + "once, in closed form", paths[0], once, 1e-4 * once);
         for (std::size_t k = 0; k < k_orders.size(); ++k)
             deviations.add(what + k_orders[k], paths[k], photons[k].mean(), photons[k].error());
     }
     deviations.expect_within_errors();
-    // One or two per cent of the light are at angles that a wrong table would leave out.
+    // One or two per cent of the light are at angles that a wrong table would omit.
     deviations.expect_errors_below(0.015, "all");
 }
 

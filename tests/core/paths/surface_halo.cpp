@@ -13,16 +13,16 @@
 namespace uw::test {
 namespace {
 
-// Stripes on a sphere around the camera, at all places of which the water shows them alike: what
-// it scatters of 1 + cos(k azimuth) is T(0) + T(k) cos(k azimuth), with the transfer function T of
-// the sphere's distance.
+// Stripes on a sphere around the camera, which the water blurs equally everywhere: of 1 + cos(k
+// azimuth) it scatters T(0) + T(k) cos(k azimuth), with the transfer function T at the sphere's
+// distance.
 double mean_of(const std::vector<double>& values) {
     double sum = 0;
     for (const double value : values) sum += value;
     return sum / static_cast<double>(values.size());
 }
 
-// Of the line through (x, y), by least squares.
+// The slope of the line through (x, y), by least squares.
 double slope(const std::vector<double>& x, const std::vector<double>& y) {
     const double mean_x = mean_of(x), mean_y = mean_of(y);
     double xx = 0, xy = 0;
@@ -36,7 +36,7 @@ double slope(const std::vector<double>& x, const std::vector<double>& y) {
 class HaloOfStripes : public testing::Test {
   protected:
     static constexpr int k_width = 240, k_height = 40;
-    // Of the table: a period of 11 degrees.
+    // A frequency of the table: a period of 11 degrees.
     static constexpr std::size_t k_frequency = 34;
     static constexpr double k_distance = 1.5;
 
@@ -53,7 +53,7 @@ class HaloOfStripes : public testing::Test {
     SphereSurface sphere_{{0, 0, 0}, k_distance};
 };
 
-TEST_F(HaloOfStripes, IsAsStrongInAllOfTheImage) {
+TEST_F(HaloOfStripes, IsEquallyStrongAllOverTheImage) {
     const AssembledScene& assembled = renderer_.assemble();
     const RaySource& rays = *assembled.camera;
     LitScene scene = assembled.lit();
@@ -63,7 +63,7 @@ TEST_F(HaloOfStripes, IsAsStrongInAllOfTheImage) {
     const auto bands = static_cast<std::size_t>(scene.medium->band_count());
     const double k = PointSpread::frequency(k_frequency);
     std::vector<SurfaceHalo::Position> nodes;
-    // Beyond its edges an image goes on with what is there, which is not stripes.
+    // Beyond its edges an image is continued by its values there, which are not stripes.
     for (int x = k_width / 6; x < k_width - k_width / 6; ++x)
         nodes.push_back({x + 0.5, 0.5 * k_height});
     const auto stripes = [&](const SurfaceSample& sample, const SurfaceLight&, std::size_t,
@@ -79,7 +79,7 @@ TEST_F(HaloOfStripes, IsAsStrongInAllOfTheImage) {
         of_stripes += static_cast<double>(
             spread.transfer(interval, 0, spread.distances().size() - 1)[k_frequency]);
     }
-    // By parts of about a period, of which the mean depends on what lies beyond the image, too.
+    // By parts of about a period, whose mean depends on what lies beyond the image, too.
     constexpr std::size_t k_periods = 5;
     for (std::size_t part = 0; part < k_periods; ++part) {
         std::vector<double> stripe, light;
@@ -92,7 +92,7 @@ TEST_F(HaloOfStripes, IsAsStrongInAllOfTheImage) {
                 light.back() += static_cast<double>(glow.of_node(n)[i * bands]);
         }
         // 8 %: at 27 degrees from the axis, as in the outermost parts, pixels are 6 % longer than
-        // one would be that is as large and square, and the rest is the fit of the blur's levels.
+        // square ones of the same area, and the rest is the error of fitting the blur's levels.
         EXPECT_NEAR(slope(stripe, light), of_stripes, 0.08 * of_stripes) << part;
     }
 }

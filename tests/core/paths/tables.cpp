@@ -1,6 +1,6 @@
 // ctest labels: analytic statistical
-// Light of every order around a lamp in endless water against exact tables; all of the tables:
-// tables_in_full.cpp.
+// Light of every order around a lamp in infinite water against exact tables; tables_in_full.cpp
+// covers the whole tables.
 #include <gtest/gtest.h>
 
 #include "tests/support/paths/path_tables.h"
@@ -8,7 +8,7 @@
 namespace uw::test {
 namespace {
 
-TEST(PathTables, RadianceByOrderIsThatOfTheTable) {
+TEST(PathTables, RadianceByOrderAgreesWithTheTable) {
     Deviations deviations;
     for (const TableRow& row : read_path_table("point_lamp_hg09_albedo08_radiance.csv", false)) {
         const double psi = row.psi_degrees;
@@ -18,7 +18,7 @@ TEST(PathTables, RadianceByOrderIsThatOfTheTable) {
     }
     EXPECT_EQ(deviations.count(), 25);
     deviations.expect_within_errors();
-    // An order left out or a factor of cos, sin or 2 would show.
+    // A missing order or a factor of cos, sin or 2 would show.
     for (const char* what : {"L1", "L2", "total"}) deviations.expect_errors_below(0.01, what);
     deviations.expect_errors_below(0.1);
 }
@@ -34,11 +34,11 @@ void compare_fluence_at(double r, const std::string& file, double g) {
     deviations.expect_errors_below(0.06);
 }
 
-TEST(PathTables, FluenceByOrderIsThatOfTheTableForIsotropicScattering) {
+TEST(PathTables, FluenceByOrderAgreesForIsotropicScattering) {
     compare_fluence_at(1, "point_source_isotropic_fluence.csv", 0);
 }
 
-TEST(PathTables, FluenceByOrderIsThatOfTheTableForForwardScattering) {
+TEST(PathTables, FluenceByOrderAgreesForForwardScattering) {
     compare_fluence_at(1, "point_source_hg09_fluence.csv", 0.9);
 }
 

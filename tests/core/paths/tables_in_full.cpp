@@ -1,6 +1,6 @@
 // ctest labels: analytic statistical slow
-// All of the exact tables around a lamp in endless water, within stated errors. These are largest
-// for orders that are a small share of the light.
+// The whole of the exact tables around a lamp in infinite water, within stated errors. These are
+// largest for orders that are a small fraction of the light.
 #include <gtest/gtest.h>
 
 #include "tests/support/paths/path_tables.h"
@@ -15,10 +15,10 @@ TEST(PathTablesInFull, RadianceByOrderFromOneTo180Degrees) {
         compare_radiance(row, {64, 1 << 11, 64}, ++seed, deviations);
     EXPECT_EQ(deviations.count(), 45 * 5);
     deviations.expect_within_errors();
-    // 0.3 %, to three errors.
+    // Three standard errors are 0.3 %.
     deviations.expect_errors_below(0.001, "L1");
     deviations.expect_errors_below(0.001, "L2");
-    // The attained ones, doubled.
+    // Twice the errors that were measured.
     deviations.expect_errors_below(0.04, "L3");
     deviations.expect_errors_below(0.15, "L4");
     deviations.expect_errors_below(0.02, "total");
@@ -27,19 +27,19 @@ TEST(PathTablesInFull, RadianceByOrderFromOneTo180Degrees) {
 void compare_fluence_tables(const std::string& file, double g) {
     Deviations deviations;
     const std::vector<TableRow> table = read_path_table(file, true);
-    // Rows one by one, not as bands of the same paths: then an order would deviate at every albedo
-    // by the same number of errors, and count more than once.
+    // Rows are computed one by one, not as bands of the same paths: otherwise an order would
+    // deviate at every albedo by the same number of errors and count more than once.
     std::uint64_t seed = 0;
     for (const TableRow& row : table)
         if ((row.albedo == 0.5 || row.albedo == 0.95) &&
             (row.r == 0.5 || row.r == 1 || row.r == 3 || row.r == 5))
-            // Far from the lamp hardly any light is of order 2, and few paths bring it.
+            // Far from the lamp hardly any light is of order 2, and few paths carry it.
             compare_fluence({row}, g, {64, row.r < 3 ? 1U << 6 : 1U << 11, 64}, ++seed, deviations);
     EXPECT_EQ(deviations.count(), 8 * 6);
     deviations.expect_within_errors();
     deviations.expect_errors_below(0.001, "order 1");
     deviations.expect_errors_below(0.002, "order 2");
-    // The attained ones, doubled.
+    // Twice the errors that were measured.
     deviations.expect_errors_below(0.05, "total");
 }
 
