@@ -40,7 +40,8 @@ Extent find_extent(const RaySource& rays, const Surfaces& surfaces) {
     return extent;
 }
 
-// Open water is resolved to twice the distance of the farthest lamp, or to a few mean free paths.
+// Open water has fine intervals up to the optical depth k_fine_depth, and at least to twice the
+// distance of the farthest lamp.
 double fine_distance_in_open_water(const RaySource& rays, const LitScene& scene, double c) {
     double max_distance = c > 0 ? k_fine_depth / c : 0;
     const auto ray = rays.refracted_ray(0.5 * rays.width(), 0.5 * rays.height());

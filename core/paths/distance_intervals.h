@@ -65,7 +65,7 @@ class IntervalWeights {
     std::size_t bands_;
     Spectrum scattering_;                 // of the uniform water [1/m]
     std::vector<Spectrum> per_unit_;      // of the constituents [1/m per unit]
-    std::vector<float> uniform_weights_;  // of the uniform water's intervals
+    std::vector<float> uniform_weights_;  // of uniform water, [interval * bands + band]
 };
 
 }  // namespace uw

@@ -12,8 +12,7 @@ namespace uw {
 
 namespace {
 
-// The number of records that are interpolated, and that of nearby ones among which others are
-// sought if the nearest face other ways.
+// The number of nearest records that are interpolated, and their number if none of those applies.
 constexpr std::size_t k_near = 8, k_max_near = 64;
 // A record applies at a point if the normals agree, and if the point is no farther from the
 // record's tangent plane than this, relative to its distance.

@@ -30,9 +30,9 @@ class ParallelLightInterval {
     /// int e^(-rate s) ds over the interval [m].
     double effective_length() const;
     /// Samples a distance by a random number in [0, 1).
-    double draw(double u) const;
+    double sample(double u) const;
     /// The pdf of the sampled distance [1/m].
-    double density(double s) const;
+    double pdf(double s) const;
 
   private:
     Interval lit_;
@@ -44,14 +44,14 @@ double ParallelLightInterval::effective_length() const {
     return std::abs(depth) < k_even_depth ? lit_.length() : -std::expm1(-depth) / rate_;
 }
 
-double ParallelLightInterval::draw(double u) const {
+double ParallelLightInterval::sample(double u) const {
     const double depth = rate_ * lit_.length();
     const double s = std::abs(depth) < k_even_depth ? u * lit_.length()
                                                     : -std::log1p(u * std::expm1(-depth)) / rate_;
     return lit_.begin + std::clamp(s, 0.0, lit_.length());
 }
 
-double ParallelLightInterval::density(double s) const {
+double ParallelLightInterval::pdf(double s) const {
     const double depth = rate_ * lit_.length();
     if (std::abs(depth) < k_even_depth) return 1 / lit_.length();
     return std::exp(-rate_ * (s - lit_.begin)) / effective_length();
@@ -63,7 +63,7 @@ struct ScatterPlace {
     double s = 0;             // along the segment
     double half_tangent = 0;  // of the scattering angle
     double radius = 0;        // from the light's origin
-    double density = 0;       // Lamp::spread times the pdf of the point [1/m]
+    double pdf = 0;           // of the point [1/m], times Lamp::spread
 };
 
 /// Chooses a lamp and a point on a segment for next-event estimation of in-scattered light:
@@ -71,12 +71,13 @@ struct ScatterPlace {
 /// transmittance in a sun's light. Storage is reused.
 class InScatterSampler {
   public:
-    void find(const WaterOptics& optics, const ScatteringTables& tables,
-              const WaterSegment& segment, const PathState& state);
+    /// Weights the lamps and phase functions for a segment of a path.
+    void prepare(const WaterOptics& optics, const ScatteringTables& tables,
+                 const WaterSegment& segment, const PathState& state);
 
     /// Samples by three random numbers in [0, 1) on the segment of this `length`; none where
-    /// nothing is lit. May be called once after each `find`, with the same tables.
-    std::optional<ScatterPlace> choose(const ScatteringTables& tables, double length, double u_lamp,
+    /// nothing is lit. May be called once after each `prepare`, with the same tables.
+    std::optional<ScatterPlace> sample(const ScatteringTables& tables, double length, double u_lamp,
                                        double u_phase, double u_angle);
 
   private:
@@ -121,8 +122,8 @@ class InScatterSampler {
 // to the known scattering.
 constexpr double k_field_fraction = 0.25;
 
-void InScatterSampler::find(const WaterOptics& optics, const ScatteringTables& tables,
-                            const WaterSegment& segment, const PathState& state) {
+void InScatterSampler::prepare(const WaterOptics& optics, const ScatteringTables& tables,
+                               const WaterSegment& segment, const PathState& state) {
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
     const std::size_t phases = tables.phase_count();
     // The phase functions are weighted by the scattering along the whole segment. Only the variance
@@ -248,7 +249,7 @@ InScatterSampler::Candidate InScatterSampler::parallel_candidate(
     return candidate;
 }
 
-std::optional<ScatterPlace> InScatterSampler::choose(const ScatteringTables& tables, double length,
+std::optional<ScatterPlace> InScatterSampler::sample(const ScatteringTables& tables, double length,
                                                      double u_lamp, double u_phase,
                                                      double u_angle) {
     if (candidates_.empty()) return std::nullopt;
@@ -257,14 +258,14 @@ std::optional<ScatterPlace> InScatterSampler::choose(const ScatteringTables& tab
     std::optional<ScatterPlace> place =
         candidate.parallel ? sample_parallel(candidate, u_angle)
                            : sample_around(tables, candidate, length, u_phase, u_angle);
-    if (place) place->density *= chosen.probability;
+    if (place) place->pdf *= chosen.probability;
     return place;
 }
 
 ScatterPlace InScatterSampler::sample_parallel(const Candidate& candidate, double u) {
-    const double s = candidate.interval.draw(u);
+    const double s = candidate.interval.sample(u);
     return {candidate.lamp, s, candidate.passage.tangent, candidate.passage.radius(s),
-            candidate.interval.density(s)};
+            candidate.interval.pdf(s)};
 }
 
 std::optional<ScatterPlace> InScatterSampler::sample_around(const ScatteringTables& tables,
@@ -340,9 +341,9 @@ void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const 
     const double u_lamp = random.next(), u_phase = random.next(), u_angle = random.next();
     const std::size_t phases = tables_.phase_count();
     if (phases == 0) return;
-    w.in_scatter.find(optics_, tables_, segment, state);
+    w.in_scatter.prepare(optics_, tables_, segment, state);
     const std::optional<ScatterPlace> place =
-        w.in_scatter.choose(tables_, segment.length, u_lamp, u_phase, u_angle);
+        w.in_scatter.sample(tables_, segment.length, u_lamp, u_phase, u_angle);
     if (!place) return;
     const double s = place->s;
 
@@ -362,7 +363,7 @@ void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const 
     const std::span<double> radiance = w.radiance.first(bands);
     optics_.transmittances(s + place->radius, w.column, w.radiance);
     const Spectrum even = evenness_.of(lamp.index(), segment.ray, {0, segment.length});
-    const double factor = relative / place->density;
+    const double factor = relative / place->pdf;
     for (std::size_t b = 0; b < bands; ++b) {
         double beta = 0;
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];

@@ -305,10 +305,10 @@ NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effor
         std::clamp(static_cast<int>(std::sqrt(k_pilot_fraction * effort.paths / k_paths)),
                    k_min_across, k_max_across);
     NodeLattice pilot(estimator, NodeLattice::Positions::amid(estimator.rays(), across));
-    const NodePaths few{k_paths, k_paths, k_paths};
+    const NodePaths pilot_paths{k_paths, k_paths, k_paths};
     const ShareCallback no_progress = [](double) {};
-    const IrradianceCache indirect = pilot.light_surfaces(few, no_progress);
-    pilot.light_water(pilot.all(), few, indirect, no_progress);
+    const IrradianceCache indirect = pilot.light_surfaces(pilot_paths, no_progress);
+    pilot.light_water(pilot.all(), pilot_paths, indirect, no_progress);
     NodePaths paths;
     const auto count = static_cast<double>(pilot.all().size());
     for (const RadianceNode& node : pilot.raw()) {

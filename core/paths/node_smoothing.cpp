@@ -19,8 +19,8 @@ namespace {
 
 // Differences between fits that do not matter, relative to the light of the nodes around.
 constexpr double k_tolerance = 1e-3;
-// The mean of the two halves: its variance per squared weight, from the squared difference of the
-// halves, which is twice the variance of either.
+// The variance of the mean of both halves per squared weight in either and per squared difference
+// of the halves, whose expectation is twice the variance of either.
 constexpr double k_variance_of_mean = 0.125;
 
 /// The nodes around a node that take part in its fit.

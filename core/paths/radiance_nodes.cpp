@@ -249,9 +249,9 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
     if (expected.is_known && weights_.vary()) {
         // Particles may be lit anywhere, which the lamps' guides do not know. The typical light is
         // estimated without most of the multiple scattering, which is a few times as much.
-        constexpr double k_ambient = 10, k_min_own = 3;
+        constexpr double k_ambient = 10, k_min_expected = 3;
         expected.ambient = std::max(expected.ambient, k_ambient * typical_light);
-        expected.pixel = std::max(expected.pixel, k_min_own * typical_light);
+        expected.pixel = std::max(expected.pixel, k_min_expected * typical_light);
     }
     const double per_band = 1.0 / static_cast<double>(bands());
     w.batch_mean.assign(count, 0.0);
