@@ -220,7 +220,7 @@ void run_water(const WaterArguments& a, std::ostream& out) {
     {
         Progress progress("particles", "", 1, ProgressForm::text);
         survey.table = tabulate_water(survey.water, survey.volumes,
-                                      [&](double share) { progress.update(share); });
+                                      [&](double fraction) { progress.update(fraction); });
     }
     survey.sources =
         water_sources(survey.water, survey.volumes, survey.table.small_ppm, survey.table.large_ppm);

@@ -160,7 +160,7 @@ constexpr std::size_t k_max_on_page = 240;
 
 class Completion {
   public:
-    Completion(const fs::path& folder, const DatasetFile& set, const ShareCallback& progress)
+    Completion(const fs::path& folder, const DatasetFile& set, const ProgressCallback& progress)
         : folder_(folder),
           set_(set),
           definition_(set.definition),
@@ -184,8 +184,8 @@ class Completion {
     }
 
   private:
-    void tell(double share) const {
-        progress_(share);
+    void tell(double fraction) const {
+        progress_(fraction);
         throw_if_stopped();
     }
 
@@ -368,7 +368,7 @@ class Completion {
     const DatasetFile& set_;
     const DatasetDefinition& definition_;
     std::string sum_;
-    const ShareCallback& progress_;
+    const ProgressCallback& progress_;
     Manifest manifest_;
     SetFiles files_;
     std::uint64_t view_bytes_ = 0;
@@ -380,7 +380,7 @@ class Completion {
 }  // namespace
 
 void complete_dataset(const fs::path& folder, const DatasetFile& set, bool check,
-                      const ShareCallback& progress) {
+                      const ProgressCallback& progress) {
     Completion(folder, set, progress).run(check);
 }
 

@@ -13,6 +13,6 @@ namespace uw {
 /// checksums of all views' files are computed again. Throws InputError that names the frames which
 /// are missing or damaged; IoError; Interrupted.
 void complete_dataset(const std::filesystem::path& folder, const DatasetFile& set, bool check,
-                      const ShareCallback& progress);
+                      const ProgressCallback& progress);
 
 }  // namespace uw

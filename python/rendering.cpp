@@ -543,8 +543,8 @@ class RendererObject : public RunClient {
         return changed;
     }
 
-    ShareCallback told(const char* stage) {
-        return [this, stage](double share) { tell(stage, share); };
+    ProgressCallback told(const char* stage) {
+        return [this, stage](double fraction) { tell(stage, fraction); };
     }
 
     /// What `work` makes with the renderer, which has the scene.

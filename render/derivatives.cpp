@@ -131,7 +131,7 @@ auto by_light(Renderer& renderer, const DerivativeOptions& options, const ByPath
 
 std::vector<float> derivative_images(Renderer& renderer, std::span<const SceneChange> changes,
                                      const DerivativeOptions& options,
-                                     const ShareCallback& progress) {
+                                     const ProgressCallback& progress) {
     const ChangedScenes changed(renderer.assemble().lit(), changes);
     return by_light(
         renderer, options,
@@ -177,7 +177,7 @@ class AssembledChanges {
 
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
                                      const DerivativeOptions& options,
-                                     const ShareCallback& progress) {
+                                     const ProgressCallback& progress) {
     refuse_other_images(renderer.assemble(), changes.empty() ? "" : changes.front().name);
     const AssembledChanges assembled(renderer, changes);
     return derivative_images(renderer, assembled.lit(), options, progress);
@@ -263,7 +263,7 @@ Medium with_one_more(const std::string& name, const AssembledScene& scene) {
 
 std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::string> names,
                                      const DerivativeOptions& options,
-                                     const ShareCallback& progress) {
+                                     const ProgressCallback& progress) {
     const AssembledScene& scene = renderer.assemble();
     refuse_other_images(scene, names.empty() ? "" : names.front());
     std::vector<Medium> media;
@@ -404,7 +404,7 @@ class GradientParts {
 
 SceneGradient scene_gradient(Renderer& renderer, const GradientRequest& by,
                              std::span<const double> weights, const DerivativeOptions& options,
-                             const ShareCallback& progress) {
+                             const ProgressCallback& progress) {
     refuse_other_images(renderer.assemble(),
                         by.changes.empty() ? "by voxel or texel" : by.changes.front().name);
     const AssembledChanges changes(renderer, by.changes);

@@ -38,7 +38,7 @@ struct DerivativeOptions {
 /// paper's output) and for changes of anything else, saying why; and as Renderer.
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
                                      const DerivativeOptions& options,
-                                     const ShareCallback& progress);
+                                     const ProgressCallback& progress);
 
 /// The derivatives of the image by each of
 ///
@@ -53,7 +53,7 @@ std::vector<float> scene_derivatives(Renderer& renderer, std::span<const Changed
 /// UsageError for other names.
 std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::string> names,
                                      const DerivativeOptions& options,
-                                     const ShareCallback& progress);
+                                     const ProgressCallback& progress);
 
 /// What a number is differentiated by, all in one pass over the image.
 struct GradientRequest {
@@ -78,6 +78,6 @@ struct SceneGradient {
 /// scene_derivatives.
 SceneGradient scene_gradient(Renderer& renderer, const GradientRequest& by,
                              std::span<const double> weights, const DerivativeOptions& options,
-                             const ShareCallback& progress);
+                             const ProgressCallback& progress);
 
 }  // namespace uw

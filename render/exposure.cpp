@@ -335,7 +335,7 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
     };
     const bool truth_differs = exposure.is_rolling() && exposure.moves_surfaces();
     for (int k = 0; k < parts; ++k) {
-        const ProgressCallback tell = [&](const std::string& stage, double fraction) {
+        const StageProgressCallback tell = [&](const std::string& stage, double fraction) {
             const double done = stage == "render" ? fraction : stage == "forward scatter" ? 1 : 0;
             rendering.progress("render", (k + done) / parts);
         };

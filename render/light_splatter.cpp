@@ -68,7 +68,7 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Lamp
 }
 
 DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOptions& options,
-                                 const ShareCallback& progress) {
+                                 const ProgressCallback& progress) {
     counts_ = {};
     DeepShadowOptions share = options;
     share.column_budget /= std::max(std::size_t{1}, scene.emitters.size());

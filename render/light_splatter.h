@@ -33,7 +33,7 @@ class LightSplatter {
     /// maps of all emitters will not fit into free memory.
     DeepShadows splat(
         const AssembledScene& scene, const DeepShadowOptions& options,
-        const ShareCallback& progress = [](double) {});
+        const ProgressCallback& progress = [](double) {});
 
     /// The counts of the last splat.
     const SplatCounts& counts() const { return counts_; }

@@ -404,7 +404,7 @@ void place_layer(const SnowPlacing& scene, const CellLayer& layer, const PixelWi
 
 }  // namespace
 
-SnowSplats SnowPlacing::splats(const PixelWindow& window, const ShareCallback& progress) const {
+SnowSplats SnowPlacing::splats(const PixelWindow& window, const ProgressCallback& progress) const {
     std::vector<ViewHull> hulls;
     std::vector<CellLayer> layers;
     hulls.reserve(model.ranges.size());

@@ -93,7 +93,7 @@ struct SnowPlacing {
 
     /// Every particle that touches a pixel of `window` and is not behind a surface, on all threads.
     /// Throws Interrupted.
-    SnowSplats splats(const PixelWindow& window, const ShareCallback& progress) const;
+    SnowSplats splats(const PixelWindow& window, const ProgressCallback& progress) const;
 };
 
 /// Marine snow: places the particles, and adds to each pixel what they change in its light, and in

@@ -80,7 +80,7 @@ void Renderer::build() {
     if (!scene_)
         scene_ = assemble_scene(
             *image_, cache_, [this](const std::string& stage) { begin(stage); },
-            [this](double share) { progress_("particles", share); });
+            [this](double fraction) { progress_("particles", fraction); });
 }
 
 const AssembledScene& Renderer::assemble() {
@@ -90,7 +90,7 @@ const AssembledScene& Renderer::assemble() {
 }
 
 // At the resolution of the scene that was set, of which `scene` may be a part of the exposure.
-DeepShadows Renderer::light_of(const AssembledScene& scene, const ShareCallback& progress) {
+DeepShadows Renderer::light_of(const AssembledScene& scene, const ProgressCallback& progress) {
     DeepShadows light = cache_.light(
         scene, deep_shadow_options(scene_->desc().render.quality, scene_->water.medium), progress);
     splat_rays_ += cache_.splat_counts().rays;
@@ -101,7 +101,7 @@ const DeepShadows& Renderer::splat() {
     build();
     if (light_.empty()) {
         begin("splat");
-        light_ = light_of(*scene_, [this](double share) { progress_("splat", share); });
+        light_ = light_of(*scene_, [this](double fraction) { progress_("splat", fraction); });
     }
     return light_;
 }
@@ -206,10 +206,10 @@ void Renderer::warn_of_multiple_error() {
         100 * *report_.multiple_error, better, see_troubleshooting("Blotches, grain and spots")));
 }
 
-ProgressCallback Renderer::progress_of_group(std::size_t group, std::size_t groups) const {
+StageProgressCallback Renderer::progress_of_group(std::size_t group, std::size_t groups) const {
     if (groups == 1) return progress_;
-    return [this, group, groups](const std::string& stage, double share) {
-        const double done = stage == "render" ? share : stage == "forward scatter" ? 1 : 0;
+    return [this, group, groups](const std::string& stage, double fraction) {
+        const double done = stage == "render" ? fraction : stage == "forward scatter" ? 1 : 0;
         progress_("render", (static_cast<double>(group) + done) / static_cast<double>(groups));
     };
 }
@@ -243,7 +243,7 @@ void Renderer::render_other_groups(std::span<const ColourGroup> groups,
         const PixelRenderer pixels = pixel_renderer(
             scene, options.transport ? *options.transport : own, in_scatter_parts(*plan_), {});
         const BandColour colour = colour_->of(groups[k].bands);
-        const ProgressCallback progress = progress_of_group(k, groups.size());
+        const StageProgressCallback progress = progress_of_group(k, groups.size());
         Film film(film_->width(), film_->height(), film_->window(), film_->channel_names());
         ImageProgress reached;
         Rendering rendering{.desc = scene.desc(),
@@ -282,7 +282,7 @@ void Renderer::render_film(const RenderOptions& options, PassList& passes) {
     const PixelRenderer pixels =
         pixel_renderer(*scene_, transport, in_scatter_parts(*plan_), others.matchers());
     const BandColour colour = groups.size() > 1 ? colour_->of(groups.front().bands) : *colour_;
-    const ProgressCallback progress = progress_of_group(0, groups.size());
+    const StageProgressCallback progress = progress_of_group(0, groups.size());
     Rendering rendering{.desc = scene_->desc(),
                         .time = scene_->image.time().value_or(0),
                         .pixels = pixels,

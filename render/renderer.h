@@ -66,7 +66,7 @@ struct RenderReport : ImageProgress {
 /// renderer stays usable, and the same image can be requested again.
 class Renderer {
   public:
-    explicit Renderer(ProgressCallback progress = [](const std::string&, double) {})
+    explicit Renderer(StageProgressCallback progress = [](const std::string&, double) {})
         : progress_(std::move(progress)) {}
 
     /// Sets the scene of the images to come. Loads nothing yet.
@@ -128,10 +128,10 @@ class Renderer {
                       Rendering& rendering);
     void render_other_groups(std::span<const ColourGroup> groups, const RenderOptions& options,
                              PassList& passes);
-    ProgressCallback progress_of_group(std::size_t group, std::size_t groups) const;
-    DeepShadows light_of(const AssembledScene& scene, const ShareCallback& progress);
+    StageProgressCallback progress_of_group(std::size_t group, std::size_t groups) const;
+    DeepShadows light_of(const AssembledScene& scene, const ProgressCallback& progress);
 
-    ProgressCallback progress_;
+    StageProgressCallback progress_;
     std::optional<ImageScene> image_;      // as it was set
     std::optional<AssembledScene> scene_;  // none: it has not been assembled
     SceneCache cache_;

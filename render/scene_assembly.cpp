@@ -236,7 +236,7 @@ void weigh_as_output(const SceneDesc& desc, LightTransport& transport) {
 }  // namespace
 
 AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
-                              const StageCallback& begin_stage, const ShareCallback& particles) {
+                              const StageCallback& begin_stage, const ProgressCallback& particles) {
     AssembledScene scene(image);
     const SceneDesc& desc = scene.desc();
     check_integrator(desc);

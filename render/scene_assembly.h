@@ -23,7 +23,7 @@ using StageCallback = std::function<void(const std::string& stage)>;
 /// InputError and IoError of one line each.
 AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
                               const StageCallback& begin_stage,
-                              const ShareCallback& particles = {});
+                              const ProgressCallback& particles = {});
 
 /// Places the slabs of an assembled scene: costs a ray through each pixel of a coarse image. Throws
 /// as place_slabs.

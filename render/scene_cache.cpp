@@ -32,7 +32,7 @@ std::vector<std::vector<GridMappingDesc>> grids_of(const SceneDesc& scene) {
     return grids;
 }
 
-WaterModel build_water(const SceneDesc& scene, const ShareCallback& progress) {
+WaterModel build_water(const SceneDesc& scene, const ProgressCallback& progress) {
     WaterModel water = build_water_model(scene.water, scene.volumes, progress);
     const std::optional<SnowDesc>& snow = scene.water.snow;
     if (snow && snow->mean == SnowDesc::Mean::added) add_snow(*snow, water.medium);
@@ -63,7 +63,7 @@ bool SceneCache::KeptSurfaces::is_of(const SceneDesc& scene) const {
     return geometry == scene.geometry && bands_nm == scene.water.bands_nm && files.are_current();
 }
 
-const WaterModel& SceneCache::water(const SceneDesc& scene, const ShareCallback& progress) {
+const WaterModel& SceneCache::water(const SceneDesc& scene, const ProgressCallback& progress) {
     if (!water_ || !water_->is_of(scene)) {
         FileStamps files = files_of_water(scene);
         WaterModel model = build_water(scene, progress);

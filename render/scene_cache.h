@@ -45,7 +45,7 @@ struct SubmergedParts {
 class SceneCache {
   public:
     /// The water of a scene. Throws as build_water_model, to which `progress` goes.
-    const WaterModel& water(const SceneDesc& scene, const ShareCallback& progress = {});
+    const WaterModel& water(const SceneDesc& scene, const ProgressCallback& progress = {});
     /// What light paths look up of the water asked for last.
     const std::shared_ptr<const ScatteringTables>& scattering() const { return water_->scattering; }
 
@@ -83,7 +83,7 @@ class SceneCache {
     /// The light of a scene's lamps (LightSplatter::splat).
     DeepShadows light(
         const AssembledScene& scene, const DeepShadowOptions& options,
-        const ShareCallback& progress = [](double) {}) {
+        const ProgressCallback& progress = [](double) {}) {
         return splatter_.splat(scene, options, progress);
     }
     /// Frees the light: what is asked for next is made anew.

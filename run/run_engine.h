@@ -105,7 +105,8 @@ class RunClient {
     virtual void warn(std::size_t place, const std::string& line) = 0;
     /// Whether anybody reads RenderReport::light_note, which takes a tenth of an image's time.
     virtual bool reads_light_note() const { return false; }
-    /// How far a stage of the image is (ProgressCallback); from any thread, one call at a time.
+    /// How far a stage of the image is (StageProgressCallback); from any thread, one call at a
+    /// time.
     virtual void tell(const std::string& stage, double fraction) = 0;
 };
 

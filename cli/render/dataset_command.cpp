@@ -269,7 +269,7 @@ void complete(const fs::path& folder, const DatasetFile& set, bool check,
     try {
         const StopScope scope(stop_flag());
         Progress progress("completing the set", "", 1, arguments.progress);
-        complete_dataset(folder, set, check, [&](double share) { progress.update(share); });
+        complete_dataset(folder, set, check, [&](double fraction) { progress.update(fraction); });
     } catch (const Interrupted&) {
         throw Interrupted("interrupted; the views are there, --merge completes the set");
     }

@@ -199,7 +199,7 @@ void FrameRenderer::write_irradiance(OutputFile& out) {
     Progress progress(clock.label("irradiance"), "lamps", static_cast<double>(scene.lamps.size()),
                       arguments_.progress, clock.seconds_left());
     write_irradiance_vdb(out, scene, engine_.renderer().light(),
-                         [&](double share) { progress.update(share); });
+                         [&](double fraction) { progress.update(fraction); });
 }
 
 ImageWork FrameRenderer::take(std::size_t place, FinishedImage image) {

@@ -174,7 +174,7 @@ SceneDesc scene_at(const SweepArguments& a, std::size_t place) {
 /// Measures the pictures of a sweep.
 class SweepRun : public RunClient {
   public:
-    SweepRun(const SweepArguments& arguments, const ShareCallback& progress)
+    SweepRun(const SweepArguments& arguments, const ProgressCallback& progress)
         : a_(arguments), progress_(progress) {
         sweep_.keys = a_.grid.keys();
     }
@@ -220,7 +220,7 @@ class SweepRun : public RunClient {
 
   private:
     const SweepArguments& a_;
-    const ShareCallback& progress_;
+    const ProgressCallback& progress_;
     Sweep sweep_;
     std::optional<ImageScene> scene_;  // of the picture
     TargetProbe probe_;
@@ -229,7 +229,7 @@ class SweepRun : public RunClient {
 
 }  // namespace
 
-Sweep run_pictures(const SweepArguments& a, const ShareCallback& progress) {
+Sweep run_pictures(const SweepArguments& a, const ProgressCallback& progress) {
     JobScenes scenes([&a](int place) { return scene_at(a, static_cast<std::size_t>(place)); });
     const ImageChoice choice{a.frame, chosen_camera(a.camera, scenes.of(0).cameras)};
     Job job{scenes, {}};
@@ -425,7 +425,7 @@ void run_sweep(const SweepArguments& a) {
     {
         const StopScope scope(stop_flag());
         Progress progress("sweep", "pictures", static_cast<double>(a.grid.count()), a.progress);
-        sweep = run_pictures(a, [&](double share) { progress.update(share); });
+        sweep = run_pictures(a, [&](double fraction) { progress.update(fraction); });
     }
     for (const std::string& warning : sweep.warnings)
         print_message(fmt::format("warning: {}\n", warning));

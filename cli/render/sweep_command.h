@@ -66,7 +66,7 @@ struct Sweep {
 /// Reads the scene with all choices, and only if all of them can be read renders and measures one
 /// after the other; a sweep that is stopped has those measured until then. `progress` receives the
 /// share of the pictures that is done. Throws UsageError, InputError and IoError.
-Sweep run_pictures(const SweepArguments& arguments, const ShareCallback& progress);
+Sweep run_pictures(const SweepArguments& arguments, const ProgressCallback& progress);
 
 /// A row for each picture and part of it: the values that were varied, then what was measured.
 std::string sweep_csv(const Sweep& sweep);

@@ -5,11 +5,11 @@
 
 namespace uw {
 
-/// Receives how far a stage of the work is (0..1), from any thread. It is told and not asked: who
-/// wants the work to stop sets the flag of its StopScope. What it throws ends the work, too.
-using ProgressCallback = std::function<void(const std::string& stage, double fraction)>;
+/// Receives the progress of a stage of the work (0 to 1), from any thread. To stop the work, set
+/// the flag of its StopScope; an exception that the callback throws ends it, too.
+using StageProgressCallback = std::function<void(const std::string& stage, double fraction)>;
 
 /// The same for work of a single stage.
-using ShareCallback = std::function<void(double share)>;
+using ProgressCallback = std::function<void(double fraction)>;
 
 }  // namespace uw

@@ -50,7 +50,7 @@ class ScoreSum final : public ContributionSink {
 /// Calls `render(x, y, sum)` for each pixel, which returns its light's factor, and stores the sums.
 template <class Render>
 std::vector<float> images_of(const ChangedScenes& scenes, const PixelWindow& window,
-                             const ShareCallback& progress, const Render& render) {
+                             const ProgressCallback& progress, const Render& render) {
     const auto width = static_cast<std::size_t>(window.width());
     const auto height = static_cast<std::size_t>(window.height());
     const std::size_t bands = scenes.bands(), pixels = width * height;
@@ -88,7 +88,7 @@ PathRound round_of(const Draws& draws) {
 std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
                                           const VolumeIntegrator& water,
                                           const ChangedScenes& scenes, const PixelWindow& window,
-                                          const ShareCallback& progress) {
+                                          const ProgressCallback& progress) {
     return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
         thread_local PixelView view;
         thread_local SurfaceLight light;
@@ -101,7 +101,7 @@ std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
 
 std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedScenes& scenes,
                                     const PixelWindow& window, const Draws& draws,
-                                    const ShareCallback& progress) {
+                                    const ProgressCallback& progress) {
     PathPixels paths(pixels, 0);
     paths.share_out(draws.samples);
     return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
@@ -215,7 +215,7 @@ class WorthOfTerms final : public ContributionSink {
 /// Calls `render(x, y, terms)` for each pixel, row by row, in as many parts as there are.
 template <class Render>
 void gather(const PixelWeights& weights, std::span<const PartGradients> parts,
-            const ShareCallback& progress, const Render& render) {
+            const ProgressCallback& progress, const Render& render) {
     const PixelWindow& window = weights.window;
     std::atomic<int> done = 0;
     parallel_for(parts.size(), [&](std::size_t part) {
@@ -232,7 +232,7 @@ void gather(const PixelWeights& weights, std::span<const PartGradients> parts,
 
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
                          const PixelWeights& weights, const std::optional<Draws>& draws,
-                         std::span<const PartGradients> parts, const ShareCallback& progress) {
+                         std::span<const PartGradients> parts, const ProgressCallback& progress) {
     gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& terms) {
         thread_local PixelView view;
         thread_local SurfaceLight light;
@@ -246,7 +246,7 @@ void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& wa
 }
 
 void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, const Draws& draws,
-                   std::span<const PartGradients> parts, const ShareCallback& progress) {
+                   std::span<const PartGradients> parts, const ProgressCallback& progress) {
     PathPixels paths(pixels, 0);
     paths.share_out(draws.samples);
     gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& terms) {

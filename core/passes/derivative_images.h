@@ -25,7 +25,7 @@ namespace uw {
 std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
                                           const VolumeIntegrator& water,
                                           const ChangedScenes& scenes, const PixelWindow& window,
-                                          const ShareCallback& progress);
+                                          const ProgressCallback& progress);
 
 /// What is drawn at random: how many light paths per pixel, and which of all that could be.
 struct Draws {
@@ -36,7 +36,7 @@ struct Draws {
 /// in their light transport.
 std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedScenes& scenes,
                                     const PixelWindow& window, const Draws& draws,
-                                    const ShareCallback& progress);
+                                    const ProgressCallback& progress);
 
 /// An image of weights, [pixel of the window][band]: the derivative of some number by the light of
 /// an image's pixels.
@@ -62,9 +62,9 @@ using PartGradients = std::vector<std::unique_ptr<ContributionGradient>>;
 /// Otherwise as quadrature_derivatives.
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
                          const PixelWeights& weights, const std::optional<Draws>& draws,
-                         std::span<const PartGradients> parts, const ShareCallback& progress);
+                         std::span<const PartGradients> parts, const ProgressCallback& progress);
 /// As path_derivatives.
 void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, const Draws& draws,
-                   std::span<const PartGradients> parts, const ShareCallback& progress);
+                   std::span<const PartGradients> parts, const ProgressCallback& progress);
 
 }  // namespace uw

@@ -116,7 +116,7 @@ class ForwardScattering {
     void keep(const RenderedPixel& pixel);
 
     /// Scatters everything stored. Throws Interrupted.
-    void run(const ShareCallback& progress);
+    void run(const ProgressCallback& progress);
 
     /// Adds the result to a film that holds the first pass and whose window is the whole image.
     void write(const LayerPlan& plan, const BandColour& colour, Film& film) const;
@@ -338,7 +338,7 @@ void ForwardScattering::add_surface(const RenderedPixel& pixel, std::size_t samp
     }
 }
 
-void ForwardScattering::run(const ShareCallback& progress) {
+void ForwardScattering::run(const ProgressCallback& progress) {
     // Before all surfaces the error of a slab is of second order in its thickness.
     if (spacing_ > 1) in_scatter_.join_pairs(water_.extent().nearest, first_slab_);
     const auto steps = static_cast<double>(in_scatter_.count()) + 1;

@@ -167,7 +167,7 @@ class MultipleScattering {
 
     /// Estimates the light of the pixels of `window`. Throws Interrupted if the work is to stop,
     /// InputError if the nodes do not fit into free memory.
-    void prepare(const PixelWindow& window, const ShareCallback& progress);
+    void prepare(const PixelWindow& window, const ProgressCallback& progress);
 
     /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`. The
     /// samples of `view` begin at `first_sample` of `light`. Sets the error. Thread safe.
@@ -238,7 +238,7 @@ MultipleScattering::MultipleScattering(const PixelRenderer& pixels,
       estimator_(pixels.rays(), pixels.scene(), pixels.transport(), weights_,
                  options.lamps ? static_cast<std::size_t>(pixels.lamp_count()) + 1 : 1) {}
 
-void MultipleScattering::prepare(const PixelWindow& window, const ShareCallback& progress) {
+void MultipleScattering::prepare(const PixelWindow& window, const ProgressCallback& progress) {
     const RaySource& rays = pixels_.rays();
     NodeLattice lattice(estimator_, NodeLattice::Positions::over(rays, spacing_));
     // The corners of all cells in the window, and what these are fitted to.

@@ -83,7 +83,7 @@ struct Rendering {
     const LayerPlan& plan;
     const BandColour& colour;
     Film& film;  // its window is what is rendered
-    const ProgressCallback& progress;
+    const StageProgressCallback& progress;
     ImageProgress& reached;
     /// The rows whose ground truth TruthPass finds; empty: all of them.
     std::function<bool(int row)> has_truth{};
@@ -91,8 +91,8 @@ struct Rendering {
     std::vector<PixelStep> steps{};
 
     /// What tells `progress` how far this stage is.
-    ShareCallback progress_of(const std::string& stage) const {
-        return [this, stage](double share) { progress(stage, share); };
+    ProgressCallback progress_of(const std::string& stage) const {
+        return [this, stage](double fraction) { progress(stage, fraction); };
     }
 };
 

@@ -535,7 +535,7 @@ class Spread {
 /// Tells how far an image has got, whose number of paths may not be known yet.
 class RoundProgress {
   public:
-    RoundProgress(const ShareCallback& progress, const PixelWindow& window)
+    RoundProgress(const ProgressCallback& progress, const PixelWindow& window)
         : progress_(progress), pixels_(static_cast<double>(window.width()) * window.height()) {}
 
     void begin_round(double samples_in_all) { all_ = pixels_ * samples_in_all; }
@@ -551,7 +551,7 @@ class RoundProgress {
     }
 
   private:
-    const ShareCallback& progress_;
+    const ProgressCallback& progress_;
     double pixels_;
     double all_ = 1;  // paths
     std::atomic<std::uint64_t> done_ = 0;
@@ -592,7 +592,7 @@ void PathPass::provide(LayerSupply& supply) const {
 void PathPass::run(Rendering& rendering) {
     const LayerPlan& plan = rendering.plan;
     const PathGoal goal{samples_of(rendering.desc.render), request_.error};
-    const ShareCallback progress = rendering.progress_of(stage());
+    const ProgressCallback progress = rendering.progress_of(stage());
     PathPixels pixels(rendering.pixels, plan.order_count());
     pixels.share_out(goal.error ? k_guess : goal.samples);
     Film& film = rendering.film;

@@ -155,7 +155,7 @@ double in_scatter_tolerance(const RenderDesc& render) {
 
 void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
                   std::span<const PixelStep> steps, const PixelWindow& window,
-                  const ShareCallback& progress, const PixelCallback& done) {
+                  const ProgressCallback& progress, const PixelCallback& done) {
     const PixelWindow image{0, 0, renderer.rays().width(), renderer.rays().height()};
     const int left = window.x0 / k_tile, top = window.y0 / k_tile;
     const int columns = (window.x1 + k_tile - 1) / k_tile - left;

@@ -22,7 +22,7 @@ using PixelCallback = std::function<void(int x, int y, const PixelResult& pixel)
 /// InScatterLattice; 0 integrates every pixel's own ray. Throws Interrupted.
 void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
                   std::span<const PixelStep> steps, const PixelWindow& window,
-                  const ShareCallback& progress, const PixelCallback& done);
+                  const ProgressCallback& progress, const PixelCallback& done);
 
 /// Renders the pixels of the film's window by single scattering and the steps of other passes.
 class PixelPass final : public Pass {

@@ -38,7 +38,7 @@ RadianceEstimator::Place NodeLattice::place(int i, int j) const {
 }
 
 template <class Visit>
-void NodeLattice::for_each(const NodeWindow& window, const ShareCallback& progress,
+void NodeLattice::for_each(const NodeWindow& window, const ProgressCallback& progress,
                            const Visit& visit) const {
     const int columns = window.i1 - window.i0;
     const std::size_t count = window.size();
@@ -60,7 +60,8 @@ void append(const NodeRadiance& light, std::vector<float>& radiance) {
 
 }  // namespace
 
-IrradianceCache NodeLattice::light_surfaces(const NodePaths& paths, const ShareCallback& progress) {
+IrradianceCache NodeLattice::light_surfaces(const NodePaths& paths,
+                                            const ProgressCallback& progress) {
     for_each(
         all(), [&](double fraction) { progress(k_visible_fraction * fraction); },
         [&](int i, int j) { estimator_.estimate_surface(place(i, j), paths, raw_(i, j)); });
@@ -133,7 +134,7 @@ std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IrradianceCac
 }
 
 void NodeLattice::light_water(const NodeWindow& window, const NodePaths& paths,
-                              const IrradianceCache& indirect, const ShareCallback& progress) {
+                              const IrradianceCache& indirect, const ProgressCallback& progress) {
     double light = 0;
     for (const RadianceNode& node : raw_) light += node.mean_light;
     light /= static_cast<double>(raw_.size());
@@ -306,7 +307,7 @@ NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effor
                    k_min_across, k_max_across);
     NodeLattice pilot(estimator, NodeLattice::Positions::amid(estimator.rays(), across));
     const NodePaths pilot_paths{k_paths, k_paths, k_paths};
-    const ShareCallback no_progress = [](double) {};
+    const ProgressCallback no_progress = [](double) {};
     const IrradianceCache indirect = pilot.light_surfaces(pilot_paths, no_progress);
     pilot.light_water(pilot.all(), pilot_paths, indirect, no_progress);
     NodePaths paths;

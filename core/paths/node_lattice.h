@@ -31,10 +31,10 @@ class NodeLattice {
 
     /// Begins all nodes, and returns a cache of the indirect light on all surfaces: smoothed on
     /// those that nodes see, and estimated anew on those that only paths from the nodes meet.
-    IrradianceCache light_surfaces(const NodePaths& paths, const ShareCallback& progress);
+    IrradianceCache light_surfaces(const NodePaths& paths, const ProgressCallback& progress);
     /// Adds the light of the water to the nodes of a window.
     void light_water(const NodeWindow& window, const NodePaths& paths,
-                     const IrradianceCache& indirect, const ShareCallback& progress);
+                     const IrradianceCache& indirect, const ProgressCallback& progress);
     /// The nodes as estimated, not smoothed.
     Grid2D<RadianceNode>& raw() { return raw_; }
     /// The nodes with the light on their surfaces smoothed, and within `window` that of the water.
@@ -46,7 +46,7 @@ class NodeLattice {
 
   private:
     template <class Visit>
-    void for_each(const NodeWindow& window, const ShareCallback& progress,
+    void for_each(const NodeWindow& window, const ProgressCallback& progress,
                   const Visit& visit) const;
     std::vector<SurfaceSample> find_unseen_surfaces(const IrradianceCache& visible) const;
 

@@ -283,7 +283,7 @@ class SizeAverage {
     }
 
     /// The trapezoidal rule, to which the sizes halfway are added again and again.
-    Sums converged(const ShareCallback& progress) const {
+    Sums converged(const ProgressCallback& progress) const {
         Progress told(progress);
         const double length = sizes_.last() - sizes_.first();
         Sums sum = none();
@@ -309,7 +309,7 @@ class SizeAverage {
     /// Counts the sizes that are done. Their number may be less than the most.
     class Progress {
       public:
-        explicit Progress(const ShareCallback& tell) : tell_(tell) {}
+        explicit Progress(const ProgressCallback& tell) : tell_(tell) {}
         void add(std::size_t sizes) {
             if (!tell_) return;
             const std::scoped_lock lock(mutex_);
@@ -318,7 +318,7 @@ class SizeAverage {
         }
 
       private:
-        const ShareCallback& tell_;
+        const ProgressCallback& tell_;
         std::mutex mutex_;
         std::size_t done_ = 0;
     };
@@ -387,7 +387,7 @@ class SizeAverage {
 };
 
 SpeciesOptics compute(const SpeciesDesc& species, double wavelength_nm, double n_water,
-                      const ShareCallback& progress) {
+                      const ProgressCallback& progress) {
     const SizeAverage average(species, wavelength_nm, n_water);
     const std::string key = average.text();
     Sums sums;
@@ -409,7 +409,7 @@ SpeciesOptics compute(const SpeciesDesc& species, double wavelength_nm, double n
 class KeptOptics {
   public:
     SpeciesOptics of(const SpeciesDesc& species, double wavelength_nm, double n_water,
-                     const ShareCallback& progress) {
+                     const ProgressCallback& progress) {
         const auto is_it = [&](const Entry& entry) {
             return entry.wavelength_nm == wavelength_nm && entry.n_water == n_water &&
                    entry.species == species && entry.files.are_current();
@@ -495,13 +495,13 @@ std::vector<std::filesystem::path> files_of(const SpeciesDesc& species) {
 }
 
 SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, double n_water,
-                             const ShareCallback& progress) {
+                             const ProgressCallback& progress) {
     static KeptOptics kept;
     return kept.of(species, wavelength_nm, n_water, progress);
 }
 
 SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm,
-                             const WaterDesc& water, const ShareCallback& progress) {
+                             const WaterDesc& water, const ProgressCallback& progress) {
     if (species.vsf) return measured_optics(species, wavelength_nm, water.salinity);
     if (species.kopelevich)
         return kopelevich_optics(species, wavelength_nm, water.mineral_absorption);

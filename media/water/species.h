@@ -32,14 +32,14 @@ struct SpeciesOptics {
 /// told how far it is if it has to be computed. Throws InputError at the species' place in the
 /// scene for tables that make no sense, IoError if they cannot be read.
 SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, double n_water,
-                             const ShareCallback& progress = {});
+                             const ProgressCallback& progress = {});
 
 /// The same for any species in a scene's water: what was measured is interpolated linearly between
 /// its wavelengths at each angle, without water's molecules, and held beyond its wavelengths;
 /// Kopelevich's particles have his coefficients, one phase function at all wavelengths, and absorb
 /// with WaterDesc::mineral_absorption.
 SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm,
-                             const WaterDesc& water, const ShareCallback& progress = {});
+                             const WaterDesc& water, const ProgressCallback& progress = {});
 
 /// How much work it is to find that: the most terms of Lorenz and Mie's series that are added up,
 /// of all sizes, orders and angles. 0 for a species that is not computed.

@@ -35,7 +35,7 @@ constexpr double k_max_species_work = 2e11;
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
 class Builder {
   public:
-    Builder(const WaterDesc& water, const ShareCallback& progress);
+    Builder(const WaterDesc& water, const ProgressCallback& progress);
 
     /// Adds up the work that the species are which will be needed, so that progress is that of all.
     /// Throws InputError if it is too much.
@@ -77,7 +77,7 @@ class Builder {
     const WaterDesc& water_;
     const std::vector<SpeciesDesc> species_;  // the water's, then Kopelevich's
     const std::size_t small_, large_;         // indices of the latter
-    const ShareCallback& progress_;
+    const ProgressCallback& progress_;
     const std::size_t band_count_;
     std::optional<DepthProfile> profile_;
     std::vector<Strata::Curve> curves_;
@@ -126,7 +126,7 @@ bool is_zero(const Spectrum& x) {
     return std::all_of(x.begin(), x.end(), [](double value) { return value == 0; });
 }
 
-Builder::Builder(const WaterDesc& water, const ShareCallback& progress)
+Builder::Builder(const WaterDesc& water, const ProgressCallback& progress)
     : water_(water),
       species_(all_species(water)),
       small_(water.species.size()),
@@ -268,10 +268,10 @@ void Builder::add_species(std::size_t species, double ppm, double absorbing_ppm,
     for (std::size_t i = 0; i < band_count_; ++i) {
         const double work =
             is_first ? species_work(species_[species], water_.bands_nm[i], water_) : 0;
-        ShareCallback tell;
+        ProgressCallback tell;
         if (progress_)
-            tell = [&](double share) {
-                progress_((done_ + share * work) / std::max(expected_, done_ + work));
+            tell = [&](double fraction) {
+                progress_((done_ + fraction * work) / std::max(expected_, done_ + work));
             };
         const SpeciesOptics optics =
             species_optics(species_[species], water_.bands_nm[i], water_, tell);
@@ -466,7 +466,7 @@ WaterModel Builder::finish() {
 }  // namespace
 
 WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
-                             const ShareCallback& progress) {
+                             const ProgressCallback& progress) {
     Builder builder(water, progress);
     builder.expect(volumes);
     builder.add_uniform();

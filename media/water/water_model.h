@@ -45,7 +45,7 @@ struct WaterModel {
 /// pure water's table (300 to 900 nm) without explicit absorption, coefficients without a phase
 /// function in water that does not scatter, and whatever make_phase_function rejects.
 WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
-                             const ShareCallback& progress = {});
+                             const ProgressCallback& progress = {});
 
 /// The coefficients of all water at the depths of the model's strata, in their order, without what
 /// grids add; none without strata.

@@ -192,7 +192,7 @@ void append_depths(const WaterModel& model, WaterTable& table) {
 }  // namespace
 
 WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes_of_scene,
-                          const ShareCallback& progress) {
+                          const ProgressCallback& progress) {
     WaterTable table;
     std::vector<VolumeDesc> volumes = volumes_of_scene;
     if (!water.species.empty()) volumes.push_back(volume_of_species(water));
@@ -206,12 +206,13 @@ WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>&
         const std::size_t last = std::min(first + most, water.bands_nm.size());
         piece.bands_nm.assign(water.bands_nm.begin() + static_cast<std::ptrdiff_t>(first),
                               water.bands_nm.begin() + static_cast<std::ptrdiff_t>(last));
-        ShareCallback of_piece;
+        ProgressCallback of_piece;
         if (progress)
-            of_piece = [&](double share) {
+            of_piece = [&](double fraction) {
                 const auto all = static_cast<double>(water.bands_nm.size());
-                progress((static_cast<double>(first) + share * static_cast<double>(last - first)) /
-                         all);
+                progress(
+                    (static_cast<double>(first) + fraction * static_cast<double>(last - first)) /
+                    all);
             };
         const WaterModel model = build_water_model(piece, volumes, of_piece);
         append(model.medium.uniform, model.medium, table.uniform);

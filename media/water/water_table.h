@@ -77,7 +77,7 @@ bool is_given_per_band(const WaterDesc& water, const std::vector<VolumeDesc>& vo
 /// `water.bands_nm`, of which there may be more than k_max_bands unless numbers are given per band.
 /// Throws as build_water_model.
 WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
-                          const ShareCallback& progress = {});
+                          const ProgressCallback& progress = {});
 
 /// 2 pi int p(psi) f(psi) sin(psi) dpsi over [90, 180] degrees with f = 1.
 double backscatter_fraction(const PhaseFunction& phase);

@@ -73,7 +73,7 @@ using Irradiance = std::vector<std::vector<float>>;
 
 // Adds that of one emitter.
 void add_emitter(const AssembledScene& scene, std::size_t emitter_index, const DeepShadow& light,
-                 const Lattice& lattice, const ShareCallback& progress, Irradiance& result) {
+                 const Lattice& lattice, const ProgressCallback& progress, Irradiance& result) {
     const Lamp& lamp = scene.emitters[emitter_index];
     const AttenuationTable attenuation(scene.water.medium);
     const auto bands = static_cast<std::size_t>(attenuation.band_count);
@@ -113,7 +113,7 @@ void check_irradiance_vdb(const AssembledScene& scene) {
 
 void write_irradiance_vdb(OutputFile& out, const AssembledScene& scene,
                           const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
-                          const ShareCallback& progress) {
+                          const ProgressCallback& progress) {
     const Lattice lattice = lattice_over(scene);
     std::vector<Irradiance> values(scene.lamps.size());
     for (std::size_t j = 0; j < scene.emitters.size(); ++j)

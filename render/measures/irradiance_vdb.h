@@ -21,6 +21,6 @@ void check_irradiance_vdb(const AssembledScene& scene);
 /// Throws IoError and Interrupted.
 void write_irradiance_vdb(OutputFile& out, const AssembledScene& scene,
                           const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
-                          const ShareCallback& progress);
+                          const ProgressCallback& progress);
 
 }  // namespace uw

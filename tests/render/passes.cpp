@@ -52,7 +52,7 @@ TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
     Film film(8, 6, {0, 0, 8, 6}, plan.channel_names());
     std::vector<std::string> notes;
     std::atomic<bool> stop = false;
-    const ProgressCallback progress = [&](const std::string& stage, double fraction) {
+    const StageProgressCallback progress = [&](const std::string& stage, double fraction) {
         EXPECT_EQ(fraction, 0);
         notes.push_back("stage " + stage);
     };

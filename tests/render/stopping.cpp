@@ -122,7 +122,7 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
             const LightTransport transport = make_light_transport(assembled, light, needs.paths);
             const PixelRenderer pixels =
                 pixel_renderer(assembled, transport, in_scatter_parts(plan));
-            const ProgressCallback progress = [](const std::string&, double) {};
+            const StageProgressCallback progress = [](const std::string&, double) {};
             ImageProgress reached;
             Rendering rendering{.desc = desc,
                                 .pixels = pixels,
