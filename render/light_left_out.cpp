@@ -91,10 +91,10 @@ std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene)
         std::array<PathTrial, k_places_at_once> trials;
         parallel_for(trials.size(), [&](std::size_t i) {
             const auto [x, y] = even_place(first + i);
-            trials[i] = paths.try_out(x * rays.width(), y * rays.height(), first + i, 1);
+            trials[i] = paths.run_trial(x * rays.width(), y * rays.height(), first + i, 1);
         });
         for (const PathTrial& trial : trials) {
-            Light light{trial.once, 0};
+            Light light{trial.single, 0};
             work += k_vertices_of_place;
             for (const PathTrial::OfKind& kind : trial.kinds) {
                 light.more += kind.mean;

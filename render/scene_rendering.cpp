@@ -42,7 +42,7 @@ PassList make_passes(const ImageScene& image, const PathRequest& paths, std::int
     const SceneDesc& scene = image.desc();
     const RenderDesc& render = scene.render;
     PassList passes;  // check_integrator refuses those that do not go together
-    if (paths_at_nodes(render)) passes.add<MultipleScatteringPass>(paths.share);
+    if (paths_at_nodes(render)) passes.add<MultipleScatteringPass>(paths.path_factor);
     if (scene.water.snow) passes.add<SnowPass>(*scene.water.snow);
     if (integrator_kind(render.integrator).traces_paths)
         passes.add<PathPass>(render, paths);

@@ -16,7 +16,7 @@ namespace uw {
 
 namespace {
 
-/// Sums the terms of a pixel, each times its scores.
+/// Sums the contributions to a pixel, each times its scores, the derivatives of its logarithm.
 class ScoreSum final : public ContributionSink {
   public:
     explicit ScoreSum(const ChangedScenes& scenes)
@@ -30,7 +30,7 @@ class ScoreSum final : public ContributionSink {
         sums_.assign(sums_.size(), 0.0);
     }
     int add_vertex(int before, const PathVertex& vertex) override {
-        // A pixel's many paths need not be kept.
+        // A new path begins; those before it need not be kept.
         if (before == k_no_vertex) scores_.begin();
         return scores_.add_vertex(before, vertex);
     }
@@ -47,7 +47,8 @@ class ScoreSum final : public ContributionSink {
     std::vector<double> score_, sums_;
 };
 
-/// Calls `render(x, y, sum)` for each pixel, which returns its light's factor, and stores the sums.
+/// Calls `render(x, y, sum)`, which returns the factor of the pixel's light, for each pixel, and
+/// stores the sums.
 template <class Render>
 std::vector<float> images_of(const ChangedScenes& scenes, const PixelWindow& window,
                              const ProgressCallback& progress, const Render& render) {
@@ -59,7 +60,7 @@ std::vector<float> images_of(const ChangedScenes& scenes, const PixelWindow& win
                                height, scenes.changes()),
                    "take fewer numbers at once, or a part of the image");
     std::vector<float> images(scenes.changes() * pixels * bands);
-    constexpr std::size_t k_run = 8;  // pixels that one task renders, in a row
+    constexpr std::size_t k_run = 8;  // adjacent pixels that one task renders
     const std::size_t runs = (width + k_run - 1) / k_run;
     std::atomic<std::size_t> done = 0;
     parallel_for(runs * height, [&](std::size_t task) {
@@ -103,7 +104,7 @@ std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedSc
                                     const PixelWindow& window, const Draws& draws,
                                     const ProgressCallback& progress) {
     PathPixels paths(pixels, 0);
-    paths.share_out(draws.samples);
+    paths.allocate_paths(draws.samples);
     return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
         thread_local PixelResult result;
         paths.render(
@@ -114,28 +115,31 @@ std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedSc
 
 namespace {
 
-/// Hands the worth of each term of a pixel to all that gather derivatives from it.
+/// Hands each contribution to a pixel to the gradients of its part, with the derivative of the
+/// scalar with respect to the contribution's logarithm, the `weighted` radiance.
 class WorthOfTerms final : public ContributionSink {
   public:
     WorthOfTerms(const PartGradients& gradients, std::size_t bands)
-        : gradients_(gradients), factors_(bands), worth_(bands) {}
+        : gradients_(gradients), factors_(bands), weighted_(bands) {}
 
-    /// Of the many terms on a ray of this pixel, a few stand for all, without bias: drawn evenly
-    /// along the sum of what they are worth.
+    /// Uses only a few of the many contributions on a ray of this pixel, without bias: they are
+    /// selected by systematic resampling, with probabilities in proportion to the size of their
+    /// weighted radiance.
     void thin(int x, int y, int seed) {
         const auto pixel = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
         random_.emplace(PathRandom::seed_of(pixel, static_cast<std::uint64_t>(seed), 0), 0);
     }
-    /// The number's derivative by the light of the terms that follow, those of a pixel.
+    /// Sets the derivative of the scalar with respect to the light of the following contributions,
+    /// those of a pixel.
     void begin(std::span<const double> weights, double factor) {
         for (std::size_t b = 0; b < factors_.size(); ++b) factors_[b] = factor * weights[b];
     }
     void finish() {
-        take_kept();
+        use_kept();
         for (const auto& gradient : gradients_) gradient->finish();
     }
     int add_vertex(int before, const PathVertex& vertex) override {
-        if (before == k_no_vertex) take_kept();
+        if (before == k_no_vertex) use_kept();
         int number = k_no_vertex;
         for (const auto& gradient : gradients_) number = gradient->add_vertex(before, vertex);
         return number;
@@ -143,42 +147,42 @@ class WorthOfTerms final : public ContributionSink {
     void add(const PathContribution& term) override {
         double size = 0;
         for (std::size_t b = 0; b < factors_.size(); ++b) {
-            worth_[b] = factors_[b] * term.radiance[b];
-            size += std::abs(worth_[b]);
+            weighted_[b] = factors_[b] * term.radiance[b];
+            size += std::abs(weighted_[b]);
         }
         if (random_)
             keep(term, size);
         else
-            hand_on(term);
+            pass_on(term);
     }
 
   private:
-    // Terms on a ray that stand for all; fewer are all taken.
-    static constexpr std::size_t k_of_ray = 8;
+    // The number of contributions selected on a ray; if there are no more than these, all are used.
+    static constexpr std::size_t k_selected = 8;
 
     struct Kept {
         PathContribution term;
         double size;
-        std::size_t columns, concentration;  // how many
+        std::size_t columns, concentration;  // numbers of values
     };
 
-    void hand_on(const PathContribution& term) {
-        for (const auto& gradient : gradients_) gradient->add(term, worth_);
+    void pass_on(const PathContribution& term) {
+        for (const auto& gradient : gradients_) gradient->add(term, weighted_);
     }
 
-    // What the term refers to of the ray is not there any more when it is taken.
+    // Copies what the contribution refers to: the ray's data are gone when it is used.
     void keep(const PathContribution& term, double size) {
         kept_.push_back({term, size, term.columns.size(), term.concentration.size()});
         kept_.back().term.radiance = {};
         for (const std::span<const double> values :
-             {std::span<const double>(worth_), term.columns, term.concentration})
+             {std::span<const double>(weighted_), term.columns, term.concentration})
             values_.insert(values_.end(), values.begin(), values.end());
         total_ += size;
     }
 
-    void take_kept() {
-        const bool is_few = kept_.size() <= k_of_ray;
-        const double step = total_ / static_cast<double>(k_of_ray);
+    void use_kept() {
+        const bool is_few = kept_.size() <= k_selected;
+        const double step = total_ / static_cast<double>(k_selected);
         double next = is_few || kept_.empty() ? 0 : random_->next() * step, before = 0;
         std::span<const double> values = values_;
         const auto take = [&](std::size_t count) {
@@ -187,17 +191,17 @@ class WorthOfTerms final : public ContributionSink {
             return first;
         };
         for (Kept& kept : kept_) {
-            const std::span<const double> worth = take(worth_.size());
+            const std::span<const double> weighted = take(weighted_.size());
             kept.term.columns = take(kept.columns);
             kept.term.concentration = take(kept.concentration);
             before += kept.size;
             int times = 0;
             if (!is_few)
                 for (; next < before; next += step) ++times;
-            const double stands_for = is_few ? 1 : times * step / kept.size;
-            if (!(stands_for > 0)) continue;
-            for (std::size_t b = 0; b < worth_.size(); ++b) worth_[b] = worth[b] * stands_for;
-            hand_on(kept.term);
+            const double weight = is_few ? 1 : times * step / kept.size;
+            if (!(weight > 0)) continue;
+            for (std::size_t b = 0; b < weighted_.size(); ++b) weighted_[b] = weighted[b] * weight;
+            pass_on(kept.term);
         }
         kept_.clear();
         values_.clear();
@@ -205,14 +209,15 @@ class WorthOfTerms final : public ContributionSink {
     }
 
     const PartGradients& gradients_;
-    std::vector<double> factors_, worth_;
-    std::optional<PathRandom> random_;  // none: all terms are taken
+    std::vector<double> factors_, weighted_;
+    std::optional<PathRandom> random_;  // none: all contributions are used
     std::vector<Kept> kept_;
-    std::vector<double> values_;  // of each kept term: its worth, columns and concentrations
+    std::vector<double>
+        values_;  // of each kept contribution: weighted radiance, columns, concentrations
     double total_ = 0;
 };
 
-/// Calls `render(x, y, terms)` for each pixel, row by row, in as many parts as there are.
+/// Calls `render(x, y, sink)` for each pixel. Each part takes every parts.size()th row.
 template <class Render>
 void gather(const PixelWeights& weights, std::span<const PartGradients> parts,
             const ProgressCallback& progress, const Render& render) {
@@ -248,7 +253,7 @@ void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& wa
 void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, const Draws& draws,
                    std::span<const PartGradients> parts, const ProgressCallback& progress) {
     PathPixels paths(pixels, 0);
-    paths.share_out(draws.samples);
+    paths.allocate_paths(draws.samples);
     gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& terms) {
         thread_local PixelResult result;
         thread_local PixelView view;

@@ -15,31 +15,31 @@
 
 namespace uw {
 
-/// The derivatives of an image by numbers of its scene, [change][pixel of the window][band]: light
-/// as the image's `total` holds it, per unit of the number. Pixels do not depend on the window, nor
-/// results on the number of threads. Throws as require_memory, and
+/// Computes the derivatives of an image with respect to parameters of its scene, [change][pixel of
+/// the window][band]: of the light in the image's `total`, per unit of the parameter. Pixels do not
+/// depend on the window, nor results on the number of threads. Throws as require_memory, and
 /// Interrupted.
 ///
-/// The derivatives of light that was scattered or reflected once are the image's own sums over its
-/// own nodes, differentiated term by term.
+/// The image of single scattering is a sum over quadrature nodes; this differentiates it term by
+/// term.
 std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
                                           const VolumeIntegrator& water,
                                           const ChangedScenes& scenes, const PixelWindow& window,
                                           const ProgressCallback& progress);
 
-/// What is drawn at random: how many light paths per pixel, and which of all that could be.
+/// The random paths: their number per pixel, and their seed.
 struct Draws {
     int samples = 1, seed = 0;  ///< >= 1, >= 0
 };
 
-/// The derivatives of all light are means over random paths, without bias. `pixels` must have paths
-/// in their light transport.
+/// The same for all light: unbiased means over random paths. The light transport of `pixels` must
+/// have paths.
 std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedScenes& scenes,
                                     const PixelWindow& window, const Draws& draws,
                                     const ProgressCallback& progress);
 
-/// An image of weights, [pixel of the window][band]: the derivative of some number by the light of
-/// an image's pixels.
+/// An image of weights, [pixel of the window][band]: the derivative of some scalar, such as a loss,
+/// with respect to the light of an image's pixels.
 struct PixelWeights {
     PixelWindow window;
     std::size_t bands = 0;
@@ -53,17 +53,17 @@ struct PixelWeights {
     }
 };
 
-/// Where derivatives of that number are gathered: those of a part of the image, which is rendered
-/// in one thread. Not empty.
+/// Receive the derivatives of that scalar from one part of the image, which one thread renders. Not
+/// empty.
 using PartGradients = std::vector<std::unique_ptr<ContributionGradient>>;
 
-/// Gathers them for all parts, from all nodes of each ray, or, if there are `draws`, from a few
-/// that stand for all without bias: following what each of them met is what takes the time.
-/// Otherwise as quadrature_derivatives.
+/// Propagates the derivatives of that scalar to all `parts`, by single scattering as
+/// quadrature_derivatives. It uses all nodes of each ray or, if `draws` is set, an unbiased random
+/// selection of a few, as most of the time goes into following the path of each node.
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
                          const PixelWeights& weights, const std::optional<Draws>& draws,
                          std::span<const PartGradients> parts, const ProgressCallback& progress);
-/// As path_derivatives.
+/// The same for all light, as path_derivatives.
 void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, const Draws& draws,
                    std::span<const PartGradients> parts, const ProgressCallback& progress);
 

@@ -12,17 +12,20 @@ namespace uw {
 
 namespace {
 
-// Wider ones are seen by any rays, but for their first centimetres.
-constexpr double k_widest = 80 * std::numbers::pi / 180;
-// The least angle from the axis that is told from it [rad], and the factor to the next one.
-constexpr double k_narrowest = 1e-6, k_next_angle = 1.1;
+// Rays of any spacing meet wider beams, except for the first centimetres of these.
+constexpr double k_max_angle = 80 * std::numbers::pi / 180;
+// The angles from the axis at which intensities are sampled: the first one [rad], and the factor to
+// the next.
+constexpr double k_min_angle = 1e-6, k_angle_factor = 1.1;
 constexpr int k_azimuths = 8;
-// Beyond this many times the angle of half the intensity, a cosine has 0.02 % of it.
-constexpr double k_outer = 3.5;
-// By how much rays may bulge out of the planes through a rectangle's corners [pixels].
+// At this many times the angle of half the intensity, a power of the cosine has fallen to 0.02 %.
+constexpr double k_outer_factor = 3.5;
+// Distance by which rays may lie outside the planes through a rectangle's corners, as refraction
+// bends these [pixels].
 constexpr double k_bulge = 1;
 
-// The greatest angle from the lamp's axis at which the intensity is half of the greatest one.
+// Returns the greatest angle from the lamp's axis at which the intensity is at least half of its
+// maximum.
 double core_angle(const Lamp& emitter, const Vector3& axis) {
     const Vector3 other = std::abs(axis.x) < 0.5 ? Vector3(1, 0, 0) : Vector3(0, 1, 0);
     const Vector3 u = glm::normalize(glm::cross(axis, other)), v = glm::cross(axis, u);
@@ -30,31 +33,31 @@ double core_angle(const Lamp& emitter, const Vector3& axis) {
         double most = 0;
         for (int k = 0; k < k_azimuths; ++k) {
             const double azimuth = 2 * std::numbers::pi * k / k_azimuths;
-            const Vector3 aside = std::cos(azimuth) * u + std::sin(azimuth) * v;
-            most = std::max(
-                most, emitter.relative_intensity(std::cos(angle) * axis + std::sin(angle) * aside));
+            const Vector3 offset = std::cos(azimuth) * u + std::sin(azimuth) * v;
+            most = std::max(most, emitter.relative_intensity(std::cos(angle) * axis +
+                                                             std::sin(angle) * offset));
         }
         return most;
     };
     std::vector<std::pair<double, double>> intensities;  // by angle
     double most = 0;
-    for (double angle = k_narrowest; angle < std::numbers::pi; angle *= k_next_angle) {
+    for (double angle = k_min_angle; angle < std::numbers::pi; angle *= k_angle_factor) {
         intensities.emplace_back(angle, brightest(angle));
         most = std::max(most, intensities.back().second);
     }
-    double core = k_narrowest;
+    double core = k_min_angle;
     for (const auto& [angle, intensity] : intensities)
         if (intensity >= 0.5 * most) core = angle;
     return core;
 }
 
-// Reduces `part` to where slope * t <= most.
-void clip(double slope, double most, Interval& part) {
+// Clips `part` to where slope * t <= limit.
+void clip(double slope, double limit, Interval& part) {
     if (slope > 0)
-        part.end = std::min(part.end, most / slope);
+        part.end = std::min(part.end, limit / slope);
     else if (slope < 0)
-        part.begin = std::max(part.begin, most / slope);
-    else if (most < 0)
+        part.begin = std::max(part.begin, limit / slope);
+    else if (limit < 0)
         part.end = part.begin - 1;
 }
 
@@ -65,7 +68,7 @@ FineBeams::FineBeams(const RaySource& rays, const std::vector<Lamp>& emitters) :
     for (std::size_t i = 0; i < emitters.size(); ++i) {
         const Lamp& emitter = emitters[i];
         if (emitter.sunlight()) continue;
-        // The points of a lamp differ by their places alone, and so do their mirror images.
+        // The points of a lamp differ in position alone, and so do their mirror images.
         if (i == 0 || emitters[i - 1].index() != emitter.index() ||
             emitters[i - 1].is_mirrored() != emitter.is_mirrored())
             beam = beam_of(emitter);
@@ -78,10 +81,11 @@ FineBeams::FineBeams(const RaySource& rays, const std::vector<Lamp>& emitters) :
 std::optional<FineBeams::Beam> FineBeams::beam_of(const Lamp& emitter) {
     const DirectionCone cone = emitter.cone();
     const double core = core_angle(emitter, cone.axis);
-    if (core >= k_widest) return std::nullopt;
-    double outer = k_outer * core;
+    if (core >= k_max_angle) return std::nullopt;
+    double outer = k_outer_factor * core;
     if (!cone.has_all()) outer = std::min(outer, std::max(core, std::acos(cone.cosine)));
-    return Beam{{}, glm::normalize(cone.axis), std::tan(core), std::tan(std::min(outer, k_widest))};
+    return Beam{
+        {}, glm::normalize(cone.axis), std::tan(core), std::tan(std::min(outer, k_max_angle))};
 }
 
 std::optional<FineBeams::Bundle> FineBeams::bundle(const ImageRectangle& area) const {
@@ -95,14 +99,14 @@ std::optional<FineBeams::Bundle> FineBeams::bundle(const ImageRectangle& area) c
     Bundle found;
     for (std::size_t k = 0; k < positions.size(); ++k) {
         const auto [x, y] = positions[k];
-        // A pixel further, within the rectangle.
+        // The neighbouring position, one pixel towards the middle.
         const double dx = x > middle.x ? -1 : 1, dy = y > middle.y ? -1 : 1;
         const std::optional<Ray> ray = rays_.refracted_ray(x, y);
-        const std::optional<Ray> beside = rays_.refracted_ray(x + dx, y + dy);
-        if (!ray || !beside) return std::nullopt;
+        const std::optional<Ray> neighbour = rays_.refracted_ray(x + dx, y + dy);
+        if (!ray || !neighbour) return std::nullopt;
         rays[k] = *ray;
-        found.pixel =
-            std::max(found.pixel, glm::length(beside->direction - ray->direction) / std::sqrt(2.0));
+        found.pixel = std::max(found.pixel,
+                               glm::length(neighbour->direction - ray->direction) / std::sqrt(2.0));
     }
     found.origin = rays.back().origin;
     found.direction = rays.back().direction;
@@ -111,16 +115,16 @@ std::optional<FineBeams::Bundle> FineBeams::bundle(const ImageRectangle& area) c
         Vector3 outwards = glm::normalize(glm::cross(a.direction, b.direction));
         if (glm::dot(outwards, found.direction) > 0) outwards = -outwards;
         found.outwards[k] = outwards;
-        // Behind a port, rays do not come from one point.
+        // Behind a port, rays have no common origin.
         found.offsets[k] = std::max(glm::dot(outwards, from_origin(a.origin)),
                                     glm::dot(outwards, from_origin(b.origin)));
     }
     return found;
 }
 
-void FineBeams::begin(const ImageRectangle& area, double width, double reach) {
+void FineBeams::begin(const ImageRectangle& area, double width, double max_distance) {
     near_.clear();
-    reach_ = reach;
+    max_distance_ = max_distance;
     if (beams_.empty()) return;
     const std::optional<Bundle> all = bundle(area);
     for (const Beam& beam : beams_)
@@ -134,15 +138,16 @@ bool FineBeams::has_any(const ImageRectangle& area, double width) const {
                         near_, [&](const Beam* beam) { return is_fine_in(*part, *beam, width); });
 }
 
-// The beam at t metres from its lamp is a ball around the point there: each condition is linear.
+// At t metres from its lamp, the beam is bounded by a ball around the point there, so each
+// condition is linear in t.
 bool FineBeams::is_fine_in(const Bundle& bundle, const Beam& beam, double width) const {
     const Vector3 to_apex = beam.apex - bundle.origin;
-    // The distance of the point at t from the camera, along the ray in the middle: z + t * dz.
+    // The point at t is at the distance z + t * dz from the camera, along the ray in the middle.
     const double z = glm::dot(bundle.direction, to_apex);
     const double dz = glm::dot(bundle.direction, beam.axis);
     Interval part{0, k_far};
     clip(-dz - beam.outer_slope, z, part);
-    clip(dz - beam.outer_slope, reach_ - z, part);
+    clip(dz - beam.outer_slope, max_distance_ - z, part);
     const double margin = k_bulge * bundle.pixel;
     for (std::size_t k = 0; k < bundle.outwards.size(); ++k) {
         const Vector3& outwards = bundle.outwards[k];
@@ -159,14 +164,14 @@ bool FineBeams::is_fine_in(const Bundle& bundle, const Beam& beam, double width)
 
 namespace {
 
-// Interpolation may miss this share of the greatest light that particles of a square take away:
-// what is found is a cloud beside the rays, not how its light varies.
-constexpr double k_missed = 0.25;
-// Less than that, of all light, is not looked for.
-constexpr double k_least = 1e-4;
-// Where there are particles everywhere, of which the least take more than this share of what the
-// most do, they hide what is smaller than the first, wider probes.
-constexpr double k_even = 0.5;
+// Tolerance of interpolation, relative to the maximum attenuation by particles in a square: the
+// probes are to find clouds that the rays miss, not to resolve how their light varies.
+constexpr double k_tolerance = 0.25;
+// Particles that attenuate less than this fraction of the light are ignored.
+constexpr double k_min_attenuated = 1e-4;
+// If the least attenuation of a square exceeds this fraction of its greatest, it is an even haze,
+// which hides what is finer than the first, wider probes.
+constexpr double k_haze = 0.5;
 
 double lerp(double a, double b, double t) {
     return a + t * (b - a);
@@ -182,24 +187,24 @@ FineParticles::FineParticles(const RaySource& rays, const LitScene& scene)
     if (field_) column_.resize(static_cast<std::size_t>(field_->constituent_count()));
 }
 
-void FineParticles::begin(const PixelWindow& tile, int edge, double reach) {
+void FineParticles::begin(const PixelWindow& tile, int edge, double max_distance) {
     if (!field_) return;
     tile_ = tile;
-    reach_ = reach;
-    taken_.assign(edge / k_spacing + 1, edge / k_spacing + 1, -1);
+    max_distance_ = max_distance;
+    attenuated_.assign(edge / k_spacing + 1, edge / k_spacing + 1, -1);
 }
 
-// The share of light that the particles along a probe take away.
-double FineParticles::taken(int i, int j) {
-    double& known = taken_(i / k_spacing, j / k_spacing);
+// Returns the fraction of light that the particles along a probe attenuate.
+double FineParticles::attenuated(int i, int j) {
+    double& known = attenuated_(i / k_spacing, j / k_spacing);
     if (known >= 0) return known;
     known = 0;
     const std::optional<Ray> ray = rays_.refracted_ray(tile_.x0 + i + 0.5, tile_.y0 + j + 0.5);
     if (!ray) return known;
-    // As far as there are any.
+    // Integrate to the end of the particles' bounds.
     const Bounds bounds = field_->bounds();
-    const double end = std::min(reach_, distance(ray->origin, bounds.center()) +
-                                            0.5 * glm::length(bounds.max - bounds.min));
+    const double end = std::min(max_distance_, distance(ray->origin, bounds.center()) +
+                                                   0.5 * glm::length(bounds.max - bounds.min));
     field_->column(ray->origin, ray->at(end), column_);
     for (int b = 0; b < attenuation_.band_count; ++b)
         known -= std::expm1(-attenuation_.optical_depth(static_cast<std::size_t>(b), 0, column_)) /
@@ -215,18 +220,19 @@ bool FineParticles::has_any(int i, int j, int size, int spacing) {
     for (const int step : {2 * k_spacing, k_spacing}) {
         if (step >= spacing) continue;
         const auto [least, most] = range(square, step);
-        if (most >= k_least && differs(square, step, spacing, k_missed * most)) return true;
-        if (least > k_even * most) return false;
+        if (most >= k_min_attenuated && differs(square, step, spacing, k_tolerance * most))
+            return true;
+        if (least > k_haze * most) return false;
     }
     return false;
 }
 
-// The range of what the probes `step` pixels apart say.
+// Returns the range of the values of probes `step` pixels apart.
 Interval FineParticles::range(const Square& square, int step) {
     Interval found{1, 0};
     for (int y = 0; y <= square.height; y += step) {
         for (int x = 0; x <= square.width; x += step) {
-            const double here = taken(square.x + x, square.y + y);
+            const double here = attenuated(square.x + x, square.y + y);
             found = {std::min(found.begin, here), std::max(found.end, here)};
         }
     }
@@ -239,10 +245,10 @@ bool FineParticles::differs(const Square& square, int step, int spacing, double 
             const int left = square.x + x - x % spacing, top = square.y + y - y % spacing;
             const double u = static_cast<double>(x % spacing) / spacing;
             const double v = static_cast<double>(y % spacing) / spacing;
-            const double above = lerp(taken(left, top), taken(left + spacing, top), u);
+            const double above = lerp(attenuated(left, top), attenuated(left + spacing, top), u);
             const double below =
-                lerp(taken(left, top + spacing), taken(left + spacing, top + spacing), u);
-            const double here = taken(square.x + x, square.y + y);
+                lerp(attenuated(left, top + spacing), attenuated(left + spacing, top + spacing), u);
+            const double here = attenuated(square.x + x, square.y + y);
             if (std::abs(here - lerp(above, below, v)) > allowed) return true;
         }
     }
@@ -251,18 +257,18 @@ bool FineParticles::differs(const Square& square, int step, int spacing, double 
 
 namespace {
 
-// Greatest relative width of a depth (greatest over least distance, minus 1) for which a parabola
-// follows the in-scatter to a tenth of the tolerance.
-double distance_reach(double tolerance) {
+// Returns the maximum relative width of a depth (greatest over least distance, minus 1) at which a
+// parabola follows the in-scattered light to a tenth of the tolerance.
+double max_relative_width(double tolerance) {
     return 0.12 * std::cbrt(tolerance / 1e-3);
 }
 
-// Errors in radiance below this fraction of the tile's mean are measured relative to that level.
+// Errors of a radiance below this fraction of the tile's mean are relative to that level instead.
 constexpr double k_dark = 0.02;
 
 }  // namespace
 
-/// The position within a cell at which to interpolate, and the distances.
+/// The position within a cell at which to interpolate, and the distances with their weights.
 struct InScatterLattice::Place {
     double u, v;  // 0..1 across and down the cell
     std::span<const double> distances, weights;
@@ -273,7 +279,7 @@ InScatterLattice::InScatterLattice(const RaySource& rays, const LitScene& scene,
     : rays_(rays),
       in_scatter_(in_scatter),
       tolerance_(tolerance),
-      distance_reach_(distance_reach(tolerance)),
+      max_relative_width_(max_relative_width(tolerance)),
       value_count_(in_scatter.value_count()),
       beams_(rays, *scene.emitters),
       particles_(rays, scene),
@@ -282,19 +288,19 @@ InScatterLattice::InScatterLattice(const RaySource& rays, const LitScene& scene,
       integrated_(value_count_) {}
 
 void InScatterLattice::evaluate(const PixelWindow& tile, const Grid2D<PixelView>& views,
-                                std::span<const double> beside) {
+                                std::span<const double> other_light) {
     tile_ = tile;
     views_ = &views;
-    beside_.assign(beside.begin(), beside.end());
+    other_light_.assign(other_light.begin(), other_light.end());
     pixel_values_.assign(views.size() * value_count_, 0.0);
     collect_distances();
     nodes_.assign(k_side, k_side);
     node_values_.clear();
     set_floor();
-    const double reach =
+    const double max_distance =
         distances_.empty() ? 0 : *std::max_element(distances_.begin(), distances_.end());
-    beams_.begin(cell(0, 0, k_coarsest), k_coarsest / 2, reach);
-    particles_.begin(tile, k_tile, reach);
+    beams_.begin(cell(0, 0, k_coarsest), k_coarsest / 2, max_distance);
+    particles_.begin(tile, k_tile, max_distance);
     for (int j = 0; j < tile.height(); j += k_coarsest)
         for (int i = 0; i < tile.width(); i += k_coarsest) fill_cell(i, j, k_coarsest);
 }
@@ -325,31 +331,31 @@ const InScatterLattice::Node& InScatterLattice::node(int i, int j) {
     Node& node = nodes_(i / k_finest, j / k_finest);
     if (node.state == Node::State::unknown) {
         find_depths(i, j, node);
-        const bool ready = node.reach > 0 && integrate_node(i, j, node);
+        const bool ready = node.radius > 0 && integrate_node(i, j, node);
         node.state = ready ? Node::State::ready : Node::State::unusable;
     }
     return node;
 }
 
-/// The depths at which the water ends in the pixels around a node, within the radius where there
-/// are few of them.
+/// Finds the depths at which the water ends in the pixels around a node, within the largest radius
+/// in which there are no more than k_depths.
 void InScatterLattice::find_depths(int i, int j, Node& node) const {
-    int reach = k_coarsest;
-    while (i % reach != 0 || j % reach != 0) reach /= 2;
-    for (; reach >= k_finest; reach /= 2) {
+    int radius = k_coarsest;
+    while (i % radius != 0 || j % radius != 0) radius /= 2;
+    for (; radius >= k_finest; radius /= 2) {
         node.depth_count = 0;
         bool few = true;
-        // A node beyond the image's edge may reach none of its pixels.
-        const int x0 = std::clamp(i - reach, 0, tile_.width());
-        const int x1 = std::min(i + reach, tile_.width() - 1);
-        const int y0 = std::max(0, j - reach), y1 = std::min(j + reach, tile_.height() - 1);
+        // The radius of a node beyond the image's edge may contain none of its pixels.
+        const int x0 = std::clamp(i - radius, 0, tile_.width());
+        const int x1 = std::min(i + radius, tile_.width() - 1);
+        const int y0 = std::max(0, j - radius), y1 = std::min(j + radius, tile_.height() - 1);
         for (int y = y0; y <= y1 && few; ++y) {
             const std::size_t* first = &first_distances_[views_->index(0, y)];
             for (std::size_t at = first[x0]; at < first[x1 + 1] && few; ++at)
                 few = include(distances_[at], node);
         }
         if (!few) continue;
-        if (node.depth_count > 0) node.reach = reach;
+        if (node.depth_count > 0) node.radius = radius;
         return;
     }
 }
@@ -361,7 +367,7 @@ bool InScatterLattice::include(double distance, Node& node) const {
         if (distance >= depth.least && distance <= depth.greatest) return true;
         const double least = std::min(depth.least, distance);
         const double greatest = std::max(depth.greatest, distance);
-        if (greatest > (1 + distance_reach_) * least) continue;
+        if (greatest > (1 + max_relative_width_) * least) continue;
         depth = {least, greatest};
         return true;
     }
@@ -409,7 +415,7 @@ bool InScatterLattice::corners(int i, int j, int spacing, Corners& found) {
     for (std::size_t c = 0; c < found.size(); ++c) {
         const int right = c % 2 != 0 ? spacing : 0, below = c / 2 != 0 ? spacing : 0;
         const Node& corner = node(i + right, j + below);
-        if (corner.state != Node::State::ready || corner.reach < spacing) return false;
+        if (corner.state != Node::State::ready || corner.radius < spacing) return false;
         found[c] = &corner;
     }
     return true;
@@ -420,15 +426,16 @@ bool InScatterLattice::confirmed(int i, int j, int spacing) {
     Corners from{};
     if (!corners(i, j, spacing, from)) return false;
     const int half = spacing / 2;
-    // Few pixels lie in small cells, and features that five nodes miss in a large one are found
-    // by those of smaller ones.
+    // Finer cells tolerate more: they contain few pixels, and a feature that the five nodes of a
+    // large cell miss is found by those of smaller ones.
     const double allowed = tolerance_ * std::sqrt(static_cast<double>(k_coarsest) / spacing);
     for (int v = 0; v <= 2; ++v) {
         for (int u = 0; u <= 2; ++u) {
             if (u != 1 && v != 1) continue;
             const Node& middle = node(i + u * half, j + v * half);
-            if (middle.state != Node::State::ready || middle.reach < half) return false;
-            // Up to every surface seen around the node, not only the one it sees itself.
+            if (middle.state != Node::State::ready || middle.radius < half) return false;
+            // Compare up to every surface around the node, not only up to the one that the node
+            // itself sees.
             constexpr std::array<double, 1> k_whole{1.0};
             for (std::size_t d = 0; d < middle.depth_count; ++d) {
                 for (const double& distance : {middle.depths[d].least, middle.depths[d].greatest}) {
@@ -473,7 +480,7 @@ bool InScatterLattice::agree(const Corners& from, const Place& place, const Node
             difference += interpolated_[k] - integrated_[k];
             light += integrated_[k];
         }
-        const double reference = std::max(light + beside_[b], floor_[b]);
+        const double reference = std::max(light + other_light_[b], floor_[b]);
         if (!(std::abs(difference) <= allowed * reference)) return false;
     }
     return true;
@@ -493,7 +500,7 @@ void InScatterLattice::fill_cell(int i, int j, int spacing) {
             fill_pixel(x, y, interpolate ? half : 0);
 }
 
-/// `spacing`: that of the lattice from which the pixel is interpolated; 0: none.
+/// Interpolates a pixel from the lattice of this `spacing`, or integrates it if `spacing` is 0.
 void InScatterLattice::fill_pixel(int x, int y, int spacing) {
     const PixelView& view = (*views_)(x, y);
     if (view.distances.empty()) return;
@@ -508,10 +515,10 @@ void InScatterLattice::fill_pixel(int x, int y, int spacing) {
     const double v = static_cast<double>(y % spacing) / spacing;
     for (std::size_t c = 0; c < from.size(); ++c) {
         const double weight = (c % 2 != 0 ? u : 1 - u) * (c / 2 != 0 ? v : 1 - v);
-        // Corners know the depths of all pixels within their reach.
+        // The depths of the corners cover those of all pixels within their radius.
         if (weight > 0) add_node(*from[c], weight, view.distances, view.weights, values);
     }
-    // Parabolas through the light of a lamp that shines behind the surface alone go below zero.
+    // A parabola through light that begins only behind the nearest distance may be negative.
     for (double& value : values) value = std::max(value, 0.0);
 }
 

@@ -20,28 +20,29 @@ struct ImageRectangle {
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// The beams of lamps as narrow things in an image, such as a laser's line: rays that are some
-/// pixels apart may pass them on both sides.
+/// Detects beams of lamps that are narrow in the image, such as a laser's line: they may lie
+/// between rays that are some pixels apart.
 class FineBeams {
   public:
     /// `rays` must outlive this object.
     FineBeams(const RaySource& rays, const std::vector<Lamp>& emitters);
 
-    /// From here on, has_any() is asked for parts of `area` and for this `width` at most.
-    void begin(const ImageRectangle& area, double width, double reach);
+    /// Prepares calls of has_any() for parts of `area`, `width` at most, and distances up to
+    /// `max_distance` [m].
+    void begin(const ImageRectangle& area, double width, double max_distance);
 
-    /// Whether a beam that is narrower than `width` pixels there is seen in `area`, or may be, up
-    /// to the distance `reach` of begin() [m].
+    /// Whether a beam that is narrower than `width` pixels is visible in `area`, or may be, up to
+    /// the maximum distance of begin().
     bool has_any(const ImageRectangle& area, double width) const;
 
   private:
-    /// Where the intensity is more than half of the greatest, and where it matters.
+    /// A cone in which the intensity exceeds half of its maximum, in one in which it matters.
     struct Beam {
         Point3 apex;
         Vector3 axis;                    // unit
         double core_slope, outer_slope;  // tangents of the angles from the axis
     };
-    /// The rays of a rectangle.
+    /// The pyramid of the rays of a rectangle.
     struct Bundle {
         Point3 origin;
         Vector3 direction;                // of the ray in the middle
@@ -56,27 +57,27 @@ class FineBeams {
 
     const RaySource& rays_;
     std::vector<Beam> beams_;
-    std::vector<const Beam*> near_;  // those of begin()
-    double reach_ = 0;
+    std::vector<const Beam*> near_;  // those that may matter in the area of begin()
+    double max_distance_ = 0;
 };
 
-/// Clouds of particles that are small in an image: rays that are some pixels apart may pass beside
-/// them. Probes are finer: rays k_spacing pixels apart, or twice that in an even haze, of which
-/// only the particles are known.
+/// Detects clouds of particles that are small in the image: rays that are some pixels apart may
+/// miss them. Probes find them: rays k_spacing pixels apart, or twice that in an even haze, along
+/// which only the optical depth of the particles is computed.
 class FineParticles {
   public:
     static constexpr int k_spacing = 2;  // [pixels]
 
-    /// Both must outlive this object.
+    /// `rays` and `scene` must outlive this object.
     FineParticles(const RaySource& rays, const LitScene& scene);
 
-    /// The probes of a tile are traced up to `reach` [m], once they are asked for. `edge`: of its
-    /// squares, which are whole beyond the image's edge [pixels].
-    void begin(const PixelWindow& tile, int edge, double reach);
+    /// Prepares a tile, whose probes are computed up to `max_distance` [m] when they are first
+    /// needed. `edge` [pixels]: that of a whole tile, which may extend beyond the image.
+    void begin(const PixelWindow& tile, int edge, double max_distance);
 
-    /// Whether the square of `size` pixels at (i, j) of the tile holds particles that rays at
-    /// multiples of `spacing` in it do not tell of, by interpolation between them. All of them are
-    /// multiples of k_spacing.
+    /// Whether the square of `size` pixels at (i, j) of the tile contains particles that
+    /// interpolation between rays at multiples of `spacing` misses. All arguments are multiples of
+    /// k_spacing.
     bool has_any(int i, int j, int size, int spacing);
 
   private:
@@ -85,50 +86,52 @@ class FineParticles {
         int x, y, width, height;
     };
 
-    double taken(int i, int j);
+    double attenuated(int i, int j);
     Interval range(const Square& square, int step);
-    // Whether a probe is farther than `allowed` from interpolation between rays `spacing` apart.
+    // Whether a probe differs by more than `allowed` from interpolation between rays `spacing`
+    // apart.
     bool differs(const Square& square, int step, int spacing, double allowed);
 
     const RaySource& rays_;
     const ConcentrationField* field_;
     AttenuationTable attenuation_;
-    double reach_ = 0;
+    double max_distance_ = 0;
     PixelWindow tile_;
-    // Shares of light that particles take away, at probes, mean over the bands; < 0: not yet known.
-    Grid2D<double> taken_;
+    // Fraction of light that the particles along a probe attenuate, mean over the bands; < 0: not
+    // yet computed.
+    Grid2D<double> attenuated_;
     std::vector<double> column_;
 };
 
-/// In-scatter of a tile of pixels. It varies smoothly across the image except at the edges of
-/// shadows and surfaces, so it is integrated at the nodes of a lattice and interpolated between
-/// them, bilinearly over the image and by a parabola over distance, where the nodes of the next
-/// finer lattice confirm the interpolation; elsewhere the lattice is refined, down to single
-/// pixels. Reused between tiles.
+/// Interpolates the in-scattered light of a tile of pixels. That light varies smoothly across the
+/// image except at the edges of shadows and surfaces, so it is integrated at the nodes of a lattice
+/// and interpolated between them, bilinearly over the image and by a parabola over distance. Where
+/// the nodes of the next finer lattice do not confirm the interpolation, the lattice is refined,
+/// down to single pixels. Reused between tiles.
 class InScatterLattice {
   public:
     /// Pixels along a tile's edge. Tiles are aligned to multiples of it in the full image, so that
-    /// a window holds the same pixels as the whole image.
+    /// a window has the same pixels as the whole image.
     static constexpr int k_tile = 32;
 
-    /// `tolerance`: largest permitted relative difference, halfway between the nodes of the
-    /// coarsest lattice, between the interpolated value and that integrated there; sqrt(2) times
-    /// that for the next finer lattice, and so on. Pixels are interpolated from the halfway nodes
-    /// as well, so their error is smaller. All references must outlive this object.
+    /// `tolerance`: the maximum relative difference between the interpolated and the integrated
+    /// value halfway between nodes of the coarsest lattice; for each finer lattice, sqrt(2) times
+    /// that of the one before. Pixels are interpolated from the halfway nodes as well, so their
+    /// error is smaller. All references must outlive this object.
     InScatterLattice(const RaySource& rays, const LitScene& scene, const RayInScatter& in_scatter,
                      double tolerance);
 
-    /// Computes the in-scatter of the pixels of `tile` (k_tile along an edge, less at the image's
-    /// right and bottom). `views`, those of these pixels, must stay valid while the values are
-    /// used. `beside`: what is added to these values in each pixel, at least, by band; the
-    /// tolerance is of both.
+    /// Computes the in-scattered light of the pixels of `tile` (k_tile along an edge, less at the
+    /// image's right and bottom). `views`, those of these pixels, must stay valid while the values
+    /// are used. `other_light`: the least light, by band, that is added to these values in any
+    /// pixel; the tolerance is relative to the sum.
     void evaluate(const PixelWindow& tile, const Grid2D<PixelView>& views,
-                  std::span<const double> beside);
-    /// The least value of the tile's pixels by band, over all groups.
+                  std::span<const double> other_light);
+    /// Sets `least` to the minimum over the tile's pixels of the sum over all groups, by band.
     void find_least(std::span<double> least) const;
 
-    /// The values (RayInScatter) of one pixel of the tile, by its index in `views`; zeros where no
-    /// ray enters the water.
+    /// The values (RayInScatter) of one pixel of the tile, which has this index in `views`; zeros
+    /// where no ray enters the water.
     std::span<const double> values(std::size_t pixel) const {
         return std::span(pixel_values_).subspan(pixel * value_count_, value_count_);
     }
@@ -136,24 +139,25 @@ class InScatterLattice {
   private:
     static constexpr int k_coarsest = 32, k_finest = 2;  // spacings of the lattices [pixels]
     static constexpr int k_side = k_tile / k_finest + 1;
-    static constexpr std::size_t k_stops = 3;   // distances of a parabola
-    static constexpr std::size_t k_depths = 3;  // at most, of surfaces around a node
+    static constexpr std::size_t k_stops = 3;   // distances that define a parabola
+    static constexpr std::size_t k_depths = 3;  // maximum number of surfaces around a node
 
-    /// A range of distances narrow enough that a parabola through its least, greatest and middle
-    /// one gives the in-scatter up to any of them.
+    /// A range of distances so narrow that a parabola through the light up to its least, middle and
+    /// greatest one gives that up to any of them.
     struct Depth {
         double least = 0, greatest = 0;
         bool alike() const { return greatest <= (1 + 1e-9) * least; }
         std::size_t stops() const { return alike() ? 1 : k_stops; }
         double middle() const { return 0.5 * (least + greatest); }
     };
-    /// A ray of the lattice.
+    /// A ray of the lattice, integrated when it is first needed.
     struct Node {
         enum class State { unknown, ready, unusable } state = State::unknown;
-        int reach = 0;  // radius within which its depths hold [pixels]
+        int radius = 0;  // within which its depths cover those of all pixels [pixels]
         std::size_t depth_count = 0;
         std::array<Depth, k_depths> depths{};
-        std::size_t values = 0;  // index in node_values_ of the first stop of the first depth
+        std::size_t values =
+            0;  // index in node_values_ of those at the first stop of the first depth
     };
     using Corners = std::array<const Node*, 4>;
     struct Place;
@@ -162,28 +166,28 @@ class InScatterLattice {
     void find_depths(int i, int j, Node& node) const;
     bool include(double distance, Node& node) const;
     bool integrate_node(int i, int j, Node& node);
-    // The four nodes around the cell at (i, j); false if one of them cannot be used there.
+    // Finds the four nodes around the cell at (i, j); false if one of them cannot be used there.
     bool corners(int i, int j, int spacing, Corners& found);
     // Whether interpolation between the cell's corners agrees with integration at the nodes halfway
     // between them.
     bool confirmed(int i, int j, int spacing);
-    // Its pixels, those of all its nodes in the tile included.
+    // Returns the pixels of a cell, including those of all its nodes in the tile.
     ImageRectangle cell(int i, int j, int spacing) const;
-    // Whether these nodes may miss something between them.
+    // Whether something narrow may lie between these nodes.
     bool has_fine(int i, int j, int spacing);
     bool agree(const Corners& from, const Place& place, const Node& node, double allowed);
     void collect_distances();
     void fill_cell(int i, int j, int spacing);
     void fill_pixel(int x, int y, int spacing);
     void set_floor();
-    // False if one of the distances lies outside all depths of the node.
+    // Returns false if one of the distances lies outside all depths of the node.
     bool add_node(const Node& node, double weight, std::span<const double> distances,
                   std::span<const double> weights, std::span<double> values) const;
 
     const RaySource& rays_;
     const RayInScatter& in_scatter_;
     double tolerance_;
-    double distance_reach_;
+    double max_relative_width_;  // of a Depth
     std::size_t value_count_;
 
     FineBeams beams_;
@@ -195,8 +199,8 @@ class InScatterLattice {
     std::vector<double> pixel_values_;          // pixel by pixel
     Grid2D<Node> nodes_;
     std::vector<double> node_values_;
-    std::vector<double> floor_;   // per band: least reference for errors [W m^-2 sr^-1]
-    std::vector<double> beside_;  // per band
+    std::vector<double> floor_;  // per band: minimum to which errors are relative [W m^-2 sr^-1]
+    std::vector<double> other_light_;  // per band
     std::vector<double> interpolated_, integrated_;
 };
 

@@ -19,12 +19,12 @@ namespace uw {
 
 namespace {
 
-// Pixels between rays: as many as leave rays enough to tell where particles begin, and no more
-// numbers to be kept for the whole image than these.
-constexpr int k_enough_spacing = 4;
-constexpr double k_enough_rays = 8000;
+// The spacing of the rays of WeightLattice [pixels] leaves enough of them to show where particles
+// begin, but stores no more than k_max_numbers weights for the whole image.
+constexpr int k_max_spacing_of_weights = 4;
+constexpr double k_min_rays = 8000;
 constexpr double k_max_numbers = 1e7;
-constexpr double k_middle = 0.5;  // of pixels, where their rays in the water are
+constexpr double k_pixel_centre = 0.5;  // offset of a pixel's centre from its corner [pixels]
 
 }  // namespace
 
@@ -35,7 +35,7 @@ WeightLattice::WeightLattice(const RaySource& rays, const IntervalWeights& weigh
     const double pixels = static_cast<double>(rays.width()) * rays.height();
     const double numbers = pixels * static_cast<double>(uniform_.size());
     spacing_ = std::max(
-        std::clamp(static_cast<int>(std::sqrt(pixels / k_enough_rays)), 1, k_enough_spacing),
+        std::clamp(static_cast<int>(std::sqrt(pixels / k_min_rays)), 1, k_max_spacing_of_weights),
         static_cast<int>(std::ceil(std::sqrt(numbers / k_max_numbers))));
     column_ = window.x0 / spacing_;
     row_ = window.y0 / spacing_;
@@ -47,8 +47,8 @@ WeightLattice::WeightLattice(const RaySource& rays, const IntervalWeights& weigh
     parallel_for(rays_.size(), [&](std::size_t at) {
         const int i = static_cast<int>(at) % columns, j = static_cast<int>(at) / columns;
         const auto ray =
-            rays.refracted_ray(k_middle + (column_ + i) * static_cast<double>(spacing_),
-                               k_middle + (row_ + j) * static_cast<double>(spacing_));
+            rays.refracted_ray(k_pixel_centre + (column_ + i) * static_cast<double>(spacing_),
+                               k_pixel_centre + (row_ + j) * static_cast<double>(spacing_));
         if (ray)
             weights.find(*ray, rays_[at]);
         else
@@ -61,14 +61,15 @@ void WeightLattice::find(double x, double y, std::vector<float>& weights) const 
         weights = uniform_;
         return;
     }
-    const double u = (x - k_middle) / spacing_ - column_, v = (y - k_middle) / spacing_ - row_;
+    const double u = (x - k_pixel_centre) / spacing_ - column_,
+                 v = (y - k_pixel_centre) / spacing_ - row_;
     const int i = std::clamp(static_cast<int>(u), 0, rays_.width() - 2);
     const int j = std::clamp(static_cast<int>(v), 0, rays_.height() - 2);
     weights.assign(uniform_.size(), 0.0F);
-    const auto add = [&](int column, int row, double share) {
+    const auto add = [&](int column, int row, double weight) {
         const std::vector<float>& corner = rays_(column, row);
         for (std::size_t k = 0; k < weights.size(); ++k)
-            weights[k] += static_cast<float>(share) * corner[k];
+            weights[k] += static_cast<float>(weight) * corner[k];
     };
     add(i, j, (1 - u + i) * (1 - v + j));
     add(i + 1, j, (u - i) * (1 - v + j));
@@ -78,8 +79,8 @@ void WeightLattice::find(double x, double y, std::vector<float>& weights) const 
 
 namespace {
 
-/// The radiance of surfaces that SurfaceHalo blurs: by direct light and emission, which are exact,
-/// and by the indirect light.
+/// Evaluates the radiance of surfaces that SurfaceHalo blurs: direct light and emission, which are
+/// exact, and indirect light from the irradiance cache.
 class HaloSource {
   public:
     /// The references must outlive this object.
@@ -88,8 +89,8 @@ class HaloSource {
           indirect_(indirect),
           bands_(static_cast<std::size_t>(pixels.band_count())) {}
 
-    /// The radiance at the camera of `sample`, number `index` of `light`, by group and band. Thread
-    /// safe.
+    /// Sets `radiance` to what arrives at the camera from `sample`, which is number `index` of
+    /// `light`: [group * bands + band]. Thread safe.
     void find_radiance(const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
                        std::span<double> radiance) const;
 
@@ -103,7 +104,7 @@ void HaloSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& 
                                std::size_t index, std::span<double> radiance) const {
     const std::size_t groups = radiance.size() / bands_;
     const LitScene& scene = pixels_.scene();
-    if (sample.hit.is_water_surface) {  // whose light is that of lamps, too
+    if (sample.hit.is_water_surface) {  // the light that it mirrors counts as that of lamps
         std::ranges::fill(radiance, 0.0);
         return;
     }
@@ -128,30 +129,31 @@ void HaloSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& 
 
 }  // namespace
 
-/// How much is spent on the light that was scattered or reflected more than once.
+/// Options of MultipleScattering.
 struct MultipleLightOptions {
-    int paths = 0;       // in the whole image, of each kind, at its nodes, at most
-    double error = 0;    // standard error for which fewer will do, relative to the image's mean
-    int nodes = 0;       // about as many
-    int cells = 0;       // of the surfaces' halo, at most
-    bool lamps = false;  // each lamp's light by itself
+    int paths = 0;       // maximum of each kind, over all nodes of the image
+    double error = 0;    // target, relative to the image's mean; 0: none, all paths are traced
+    int nodes = 0;       // approximate number in the whole image
+    int cells = 0;       // maximum number of cells of SurfaceHalo
+    bool lamps = false;  // whether to separate the light by lamp
 };
 
 namespace {
 
-// Nodes see the same surface as a pixel if its normal agrees with theirs (k_min_node_cosine) and
-// it lies no farther from their tangent plane than this, relative to its distance.
+// A node sees the same surface as a pixel if their normals agree (k_min_node_cosine) and the
+// pixel's point lies within this distance of the node's tangent plane, relative to the distance of
+// the two points.
 constexpr double k_max_slope = 0.35;
-constexpr double k_min_cosine_of_match = 0.7;  // of normals, where no node agrees better
-constexpr int k_search = 3;            // cells around a pixel without a match at its corners
-constexpr int k_paths_of_sample = 32;  // where there is none at all
-constexpr int k_mirrored_paths = 8;    // of a pixel whose surfaces are glossy
+constexpr double k_min_cosine_of_match = 0.7;  // of normals, if no node reaches k_min_node_cosine
+constexpr int k_search_radius = 3;             // radius of the search if no corner matches [cells]
+constexpr int k_paths_of_sample = 32;          // of a sample that no node matches
+constexpr int k_mirrored_paths = 8;            // of a pixel with glossy surfaces
 
 double lerp_weight(double t, int side) {
     return side == 0 ? 1 - t : t;
 }
 
-// The least that leaves no more nodes, apart from those at the edges.
+// Returns the smallest spacing that gives no more than `nodes`, not counting those at the edges.
 int spacing_for(const RaySource& rays, int nodes) {
     const double area = static_cast<double>(rays.width()) * rays.height();
     return std::max(1, static_cast<int>(std::ceil(std::sqrt(area / nodes))));
@@ -159,18 +161,18 @@ int spacing_for(const RaySource& rays, int nodes) {
 
 }  // namespace
 
-/// The light of MultipleScatteringPass in one image.
+/// Estimates and interpolates the light of MultipleScatteringPass for one image.
 class MultipleScattering {
   public:
-    /// `pixels` must outlive this object; its transport has paths.
+    /// `pixels` must outlive this object; its light transport must have paths.
     MultipleScattering(const PixelRenderer& pixels, const MultipleLightOptions& options);
 
-    /// Estimates the light of the pixels of `window`. Throws Interrupted if the work is to stop,
-    /// InputError if the nodes do not fit into free memory.
+    /// Computes the nodes that the pixels of `window` need. Throws Interrupted if the work is to
+    /// stop, InputError if the nodes do not fit into free memory.
     void prepare(const PixelWindow& window, const ProgressCallback& progress);
 
-    /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`. The
-    /// samples of `view` begin at `first_sample` of `light`. Sets the error. Thread safe.
+    /// Adds a pixel's light to multiple_volume, multiple_surface and the lamps of `result`, and
+    /// sets its error. The samples of `view` begin at `first_sample` of `light`. Thread safe.
     void add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
              PixelResult& result) const;
 
@@ -180,7 +182,7 @@ class MultipleScattering {
         double weight;
     };
 
-    void take_away_halo(NodeLattice& lattice, const IrradianceCache& indirect);
+    void subtract_halo(NodeLattice& lattice, const IrradianceCache& indirect);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
                       std::vector<Corner>& matches) const;
@@ -188,13 +190,14 @@ class MultipleScattering {
                       std::vector<Corner>& matches) const;
     struct Errors;
 
-    double share_of_halo(double scattered, double distance, std::size_t band) const;
-    void spread_halo(const RadianceNode& node, std::span<float> halo) const;
+    double halo_fraction(double scattered, double distance, std::size_t band) const;
+    void distribute_halo(const RadianceNode& node, std::span<float> halo) const;
     void add_water(const PixelView& view, std::span<double> light, Errors& errors) const;
     void add_volume(const PixelView& view, PixelResult& result, Errors& errors) const;
     void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
                      PixelResult& result, Errors& errors) const;
-    void give(std::size_t group, std::size_t band, double radiance, PixelResult& result) const;
+    void add_to_lamp(std::size_t group, std::size_t band, double radiance,
+                     PixelResult& result) const;
 
     const PixelRenderer& pixels_;
     MultipleLightOptions options_;
@@ -203,17 +206,17 @@ class MultipleScattering {
     DistanceIntervals intervals_;
     IntervalWeights weights_;
     RadianceEstimator estimator_;
-    WeightLattice weight_lattice_;  // from prepare on, as the following
+    WeightLattice weight_lattice_;  // this and the following: from prepare on
     Grid2D<SmoothNode> nodes_;
     std::optional<SurfaceHalo> halo_;
 };
 
-/// Standard errors of a pixel's light, by band.
+/// Standard errors of the light of a pixel, by band.
 struct MultipleScattering::Errors {
-    Spectrum water;     // of what nodes tell of the water
+    Spectrum water;     // of in-scattered light from the nodes
     Spectrum surfaces;  // of the indirect light on surfaces, seen directly or through scattering
-    // Sums of the light that glossy surfaces mirror, and of its squares, by paths of the pixel's
-    // own.
+    // Sums, over the pixel's own paths, of the light that glossy surfaces mirror, and of its
+    // squares.
     Spectrum mirrored, mirrored_squares;
     double mirrored_paths = 0;
 
@@ -241,8 +244,8 @@ MultipleScattering::MultipleScattering(const PixelRenderer& pixels,
 void MultipleScattering::prepare(const PixelWindow& window, const ProgressCallback& progress) {
     const RaySource& rays = pixels_.rays();
     NodeLattice lattice(estimator_, NodeLattice::Positions::over(rays, spacing_));
-    // The corners of all cells in the window, and what these are fitted to.
-    constexpr int k_margin = k_smoothing_radius + k_search + 1;
+    // Include the corners of all cells in the window, and the nodes to which these are fitted.
+    constexpr int k_margin = k_smoothing_radius + k_search_radius + 1;
     const NodeWindow nodes{std::max(0, window.x0 / spacing_ - k_margin),
                            std::max(0, window.y0 / spacing_ - k_margin),
                            std::min(lattice.all().i1, (window.x1 - 1) / spacing_ + 2 + k_margin),
@@ -251,20 +254,20 @@ void MultipleScattering::prepare(const PixelWindow& window, const ProgressCallba
     const NodePaths paths =
         plan_paths(estimator_, {static_cast<double>(options_.paths),
                                 static_cast<int>(lattice.all().size()), options_.error});
-    constexpr double k_share_of_surfaces = 0.4;  // of the time
-    const IrradianceCache indirect =
-        lattice.light_surfaces(paths, [&](double share) { progress(k_share_of_surfaces * share); });
-    lattice.light_water(nodes, paths, indirect, [&](double share) {
-        progress(k_share_of_surfaces + (1 - k_share_of_surfaces) * share);
+    constexpr double k_surface_fraction = 0.4;  // of the work: the cache of light on surfaces
+    const IrradianceCache indirect = lattice.light_surfaces(
+        paths, [&](double fraction) { progress(k_surface_fraction * fraction); });
+    lattice.light_water(nodes, paths, indirect, [&](double fraction) {
+        progress(k_surface_fraction + (1 - k_surface_fraction) * fraction);
     });
-    take_away_halo(lattice, indirect);
+    subtract_halo(lattice, indirect);
     weight_lattice_ = WeightLattice(rays, weights_, window);
     nodes_ = lattice.smoothed(nodes, intervals_);
     lattice.find_errors(nodes, nodes_);
 }
 
-// Computes the halo, and leaves in the nodes what they hold beside it.
-void MultipleScattering::take_away_halo(NodeLattice& lattice, const IrradianceCache& indirect) {
+// Computes the halo and subtracts it from the light of the nodes.
+void MultipleScattering::subtract_halo(NodeLattice& lattice, const IrradianceCache& indirect) {
     const std::size_t groups = estimator_.groups();
     const HaloSource source(pixels_, indirect);
     const auto radiance = [&](const SurfaceSample& sample, const SurfaceLight& light,
@@ -285,7 +288,7 @@ void MultipleScattering::take_away_halo(NodeLattice& lattice, const IrradianceCa
         if (node.weights.empty()) continue;  // no ray, or outside the window
         const std::span<const float> of_node = halo_->of_node(n);
         halo.assign(of_node.begin(), of_node.end());
-        if (halo_->is_of_mean_water()) spread_halo(node, halo);
+        if (halo_->is_of_mean_water()) distribute_halo(node, halo);
         for (std::size_t i = 0; i < halo_->interval_count(); ++i) {
             if (intervals_.begin(i) >= node.max_distance) break;
             for (NodeRadiance& half : node.halves) {
@@ -300,18 +303,19 @@ void MultipleScattering::take_away_halo(NodeLattice& lattice, const IrradianceCa
     }
 }
 
-// How much of the halo of water as it is in the mean belongs to a ray, whose water scatters
-// `scattered` of even light up to `distance`.
-double MultipleScattering::share_of_halo(double scattered, double distance,
+// Returns the fraction of the halo, which is that of mean water, that a ray has whose water
+// scatters `scattered` of uniform light up to `distance`.
+double MultipleScattering::halo_fraction(double scattered, double distance,
                                          std::size_t band) const {
     if (!halo_->is_of_mean_water()) return 1;
     const double mean = halo_->scattered_by_mean_water(distance, band);
     return mean > 0 ? std::min(1.0, scattered / mean) : 1;
 }
 
-// Reduces halo, which is that of mean water, to what pixels along the node's ray have of it: none
-// where that ray scatters no light, since nodes cannot hold any there.
-void MultipleScattering::spread_halo(const RadianceNode& node, std::span<float> halo) const {
+// Scales the halo, which is that of mean water, to that of the node's ray, and distributes it over
+// the intervals in proportion to the scattering there: an interval without scattering has no light
+// to subtract it from.
+void MultipleScattering::distribute_halo(const RadianceNode& node, std::span<float> halo) const {
     const std::size_t values = estimator_.groups() * bands_;
     for (std::size_t k = 0; k < values; ++k) {
         const std::size_t band = k % bands_;
@@ -326,7 +330,7 @@ void MultipleScattering::spread_halo(const RadianceNode& node, std::span<float> 
             all += static_cast<double>(light);
             scattered += weight;
         });
-        if (scattered > 0) all *= share_of_halo(scattered, node.max_distance, band) / scattered;
+        if (scattered > 0) all *= halo_fraction(scattered, node.max_distance, band) / scattered;
         for_each([&](float& light, double weight) { light = static_cast<float>(all * weight); });
     }
 }
@@ -342,8 +346,8 @@ void MultipleScattering::find_corners(double x, double y, std::vector<Corner>& c
                                lerp_weight(u - i, right) * lerp_weight(v - j, below)});
 }
 
-void MultipleScattering::give(std::size_t group, std::size_t band, double radiance,
-                              PixelResult& result) const {
+void MultipleScattering::add_to_lamp(std::size_t group, std::size_t band, double radiance,
+                                     PixelResult& result) const {
     if (group < result.lamps.size()) result.lamps[group][band] += radiance;
 }
 
@@ -352,7 +356,7 @@ void MultipleScattering::add_water(const PixelView& view, std::span<double> ligh
     thread_local std::vector<Corner> corners;
     thread_local std::vector<float> weights;
     thread_local std::vector<double> halo;
-    Spectrum scattered{};  // of even light by the water that is known
+    Spectrum scattered{};  // of uniform light, by the water up to each distance
     weight_lattice_.find(view.x, view.y, weights);
     find_corners(view.x, view.y, corners);
     const std::size_t intervals = intervals_.count();
@@ -369,7 +373,7 @@ void MultipleScattering::add_water(const PixelView& view, std::span<double> ligh
             for (std::size_t b = 0; b < bands_; ++b) {
                 const double weight = static_cast<double>(weights[interval * bands_ + b]) *
                                       intervals_.fraction_before(interval, b, view.distances[d]);
-                const double share = view.weights[d] * weight / total;
+                const double scale = view.weights[d] * weight / total;
                 up_to_distance[b] += weight;
                 for (std::size_t group = 0; group < groups; ++group) {
                     double sum = 0;
@@ -378,7 +382,7 @@ void MultipleScattering::add_water(const PixelView& view, std::span<double> ligh
                             sum +=
                                 corner.weight *
                                 corner.node->light.water[(interval * groups + group) * bands_ + b];
-                    light[group * bands_ + b] += share * sum;
+                    light[group * bands_ + b] += scale * sum;
                 }
             }
         }
@@ -386,11 +390,12 @@ void MultipleScattering::add_water(const PixelView& view, std::span<double> ligh
         halo_->add(view.x, view.y, view.distances[d], view.weights[d], halo);
         for (std::size_t k = 0; k < light.size(); ++k)
             light[k] +=
-                halo[k] * share_of_halo(up_to_distance[k % bands_], view.distances[d], k % bands_);
+                halo[k] * halo_fraction(up_to_distance[k % bands_], view.distances[d], k % bands_);
         for (std::size_t b = 0; b < bands_; ++b)
             scattered[b] += view.weights[d] * up_to_distance[b];
     }
-    // Errors of neighbouring nodes, which were smoothed together, are alike.
+    // Neighbouring nodes were smoothed together, so their errors are correlated and add up
+    // linearly.
     for (std::size_t b = 0; b < bands_; ++b) {
         for (const Corner& corner : corners) {
             errors.water[b] +=
@@ -400,7 +405,8 @@ void MultipleScattering::add_water(const PixelView& view, std::span<double> ligh
     }
 }
 
-// What nodes hold beside the halo is a difference, and so noisy; light is not below zero.
+// The nodes store light minus halo, a noisy difference, so that the sum may come out negative:
+// clamp it.
 void MultipleScattering::add_volume(const PixelView& view, PixelResult& result,
                                     Errors& errors) const {
     thread_local std::vector<double> light;
@@ -411,13 +417,14 @@ void MultipleScattering::add_volume(const PixelView& view, PixelResult& result,
         for (std::size_t b = 0; b < bands_; ++b) {
             const double radiance = std::max(0.0, light[group * bands_ + b]);
             result.multiple_volume[b] += radiance;
-            give(group, b, radiance, result);
+            add_to_lamp(group, b, radiance, result);
         }
     }
 }
 
-// The corners that see the surface; if none does, nodes around them, by nearness. Normals that
-// differ more will do where none agrees better: on rough ground nodes cannot have them all.
+// Finds the corners that see the surface or, if none does, nodes around them, weighted by 1 /
+// distance^4. If no node has a similar normal, larger differences are accepted: on rough ground the
+// nodes do not cover all normals.
 void MultipleScattering::find_matches(double x, double y, const SurfaceHit& hit,
                                       std::vector<Corner>& matches) const {
     for (const double min_cosine : {k_min_node_cosine, k_min_cosine_of_match}) {
@@ -440,11 +447,11 @@ void MultipleScattering::find_matches(double x, double y, const SurfaceHit& hit,
                   [&](const Corner& corner) { return corner.weight <= 0 || !sees(*corner.node); });
     if (!matches.empty()) return;
     const double u = x / spacing_, v = y / spacing_;
-    for (int reach = 1; reach <= k_search && matches.empty(); ++reach) {
-        for (int j = std::max(0, static_cast<int>(v) - reach);
-             j <= std::min(nodes_.height() - 1, static_cast<int>(v) + 1 + reach); ++j) {
-            for (int i = std::max(0, static_cast<int>(u) - reach);
-                 i <= std::min(nodes_.width() - 1, static_cast<int>(u) + 1 + reach); ++i) {
+    for (int radius = 1; radius <= k_search_radius && matches.empty(); ++radius) {
+        for (int j = std::max(0, static_cast<int>(v) - radius);
+             j <= std::min(nodes_.height() - 1, static_cast<int>(v) + 1 + radius); ++j) {
+            for (int i = std::max(0, static_cast<int>(u) - radius);
+                 i <= std::min(nodes_.width() - 1, static_cast<int>(u) + 1 + radius); ++i) {
                 if (!sees(nodes_(i, j))) continue;
                 const double square = (i - u) * (i - u) + (j - v) * (j - v);
                 matches.push_back({&nodes_(i, j), 1 / (square * square + 1e-6)});
@@ -459,7 +466,7 @@ void MultipleScattering::add_surface(const SurfaceSample& sample, std::span<cons
     thread_local SmoothNode own;
     find_matches(sample.x, sample.y, sample.hit, matches);
     if (matches.empty()) {
-        // Too small for the lattice.
+        // The surface is too small for the lattice: trace paths for this sample.
         estimator_.estimate_surface(sample, k_paths_of_sample, own.light, own.surface_errors);
         matches.push_back({&own, 1});
     }
@@ -472,15 +479,15 @@ void MultipleScattering::add_surface(const SurfaceSample& sample, std::span<cons
         estimator_.estimate_mirrored(sample, mirrored_paths, mirrored, squares);
     const double weight = 1.0 / pixels_.samples();
     for (std::size_t b = 0; b < bands_; ++b) {
-        double of_matches = 0;
+        double error_of_matches = 0;
         for (const Corner& match : matches) {
             const SurfaceErrors& of_node = match.node->surface_errors;
-            of_matches +=
+            error_of_matches +=
                 match.weight * sample.hit.reflectance[b] * static_cast<double>(of_node.diffuse[b]);
             if (b < of_node.glossy.size())
-                of_matches += match.weight * static_cast<double>(of_node.glossy[b]);
+                error_of_matches += match.weight * static_cast<double>(of_node.glossy[b]);
         }
-        errors.surfaces[b] += weight * to_camera[b] * of_matches / total;
+        errors.surfaces[b] += weight * to_camera[b] * error_of_matches / total;
         if (!reflection.is_glossy()) continue;
         const double of_path = weight * to_camera[b] / mirrored_paths;
         errors.mirrored_squares[b] += of_path * of_path * squares[b];
@@ -498,10 +505,10 @@ void MultipleScattering::add_surface(const SurfaceSample& sample, std::span<cons
             }
             double reflected = sample.hit.reflectance[b] * diffuse / total;
             if (reflection.is_glossy()) reflected += glossy / total + mirrored[group * bands_ + b];
-            // What nodes give is smoothed by fits, which may fall below zero where it is dark.
+            // The light of nodes comes from a fit, which may be negative in dark places.
             const double radiance = weight * to_camera[b] * std::max(0.0, reflected);
             result.multiple_surface[b] += radiance;
-            give(group, b, radiance, result);
+            add_to_lamp(group, b, radiance, result);
         }
     }
 }
@@ -518,9 +525,9 @@ void MultipleScattering::add(const PixelView& view, const SurfaceLight& light,
         result.error[b] = result.pixel_factor * errors.of_band(b);
 }
 
-/// Sums over the pixels of an image of all light and of the squares of its errors, by band: tile by
-/// tile, each of which one thread renders, so that they are the same to the bit for any number of
-/// threads. Thread safe for pixels of different tiles.
+/// Sums all light and the squares of its errors over the pixels of an image, by band. Each tile,
+/// which one thread renders, has its own sums, so that the result is the same to the bit for any
+/// number of threads. Thread safe for pixels of different tiles.
 class ErrorSums {
   public:
     ErrorSums(const PixelWindow& window, std::size_t bands) : window_(window), bands_(bands) {
@@ -544,7 +551,7 @@ class ErrorSums {
         }
     }
 
-    void tell(ImageProgress& reached) const {
+    void report(ImageProgress& reached) const {
         const double pixels = static_cast<double>(window_.width()) * window_.height();
         const auto relative = [](double light, double squares, double count) {
             return light > 0 ? std::sqrt(squares * count) / light : 0;
@@ -578,8 +585,8 @@ class ErrorSums {
 
 namespace {
 
-// What leaves a standard error of less than 1 % where light crosses an optical depth of about one,
-// and 5 % for drafts.
+// These give a standard error of less than 1 % where light crosses an optical depth of about one,
+// and of 5 % for drafts.
 MultipleLightOptions options_of(RenderDesc::Quality quality) {
     MultipleLightOptions options;
     options.nodes = 5000;
@@ -608,8 +615,8 @@ bool has_light(const PixelRenderer& pixels) {
 
 }  // namespace
 
-MultipleScatteringPass::MultipleScatteringPass(double share)
-    : Pass("multiple scattering"), share_(share) {}
+MultipleScatteringPass::MultipleScatteringPass(double path_factor)
+    : Pass("multiple scattering"), path_factor_(path_factor) {}
 MultipleScatteringPass::~MultipleScatteringPass() = default;
 
 PassNeeds MultipleScatteringPass::needs(const LayerPlan& /*plan*/) const {
@@ -634,8 +641,8 @@ void MultipleScatteringPass::begin(Rendering& rendering) {
 void MultipleScatteringPass::run(Rendering& rendering) {
     if (!rendering.pixels.transport().paths || !has_light(rendering.pixels)) return;
     MultipleLightOptions options = options_of(rendering.desc.render.quality);
-    options.paths = static_cast<int>(options.paths * share_);
-    options.error /= std::sqrt(share_);
+    options.paths = static_cast<int>(options.paths * path_factor_);
+    options.error /= std::sqrt(path_factor_);
     options.lamps = rendering.plan.has_lamps();
     light_ = std::make_unique<MultipleScattering>(rendering.pixels, options);
     light_->prepare(rendering.film.window(), rendering.progress_of(stage()));
@@ -644,7 +651,7 @@ void MultipleScatteringPass::run(Rendering& rendering) {
 }
 
 void MultipleScatteringPass::end(Rendering& rendering) {
-    if (sums_) sums_->tell(rendering.reached);
+    if (sums_) sums_->report(rendering.reached);
 }
 
 }  // namespace uw

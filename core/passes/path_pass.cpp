@@ -21,19 +21,21 @@ namespace uw {
 
 namespace {
 
-// Rays of one batch that are traced and lit together.
-constexpr int k_together = 64;
+// Number of rays of a batch that are traced and lit together.
+constexpr int k_rays_at_once = 64;
 
-// Each of the estimates of a path has random numbers of its own, after those of its image position.
+// Each estimate of a path has its own stream of random numbers, whose dimensions follow those of
+// the image position.
 enum Stream : std::uint64_t { k_position, k_single, k_water, k_surface, k_lit };
 constexpr int k_position_dimensions = 2;
-// Beyond the lattice, whose dimensions after those of the position the estimates use.
+// The aperture's dimensions lie beyond those of the rank-1 lattice, which the estimates use.
 constexpr int k_aperture_dimension = 64;
 
-// Parts of an exposure have batches of their own, far from each other's.
+// Parts of an exposure number their batches from first_sample << k_part_shift on, so that no two of
+// them have the same random numbers.
 constexpr unsigned k_part_shift = 24;
 
-// Through a random point of the aperture, if there is one, at a random moment.
+// Samples a ray through a random point of the aperture, if there is one, at a random time.
 std::optional<Ray> camera_ray(const RaySource& rays, double x, double y, PathRandom& random) {
     if (!rays.has_aperture() && !rays.moves()) return rays.refracted_ray(x, y);
     random.skip_to(k_aperture_dimension);
@@ -46,7 +48,8 @@ std::optional<Ray> camera_ray(const RaySource& rays, double x, double y, PathRan
 
 namespace {
 
-/// A kind of light path, where its light belongs, and how it is traced.
+/// A kind of light path: its count, its random numbers, the part of the pixel's light that it
+/// estimates, and how it is traced.
 struct Kind {
     double PathCounts::*count;
     Stream stream;
@@ -57,17 +60,17 @@ struct Kind {
 constexpr std::array k_kinds{
     Kind{&PathCounts::water, k_water, &PixelResult::multiple_volume,
          [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
-            ContributionSink& terms) { return paths.trace_water(segment, random, terms); }},
+            ContributionSink& sink) { return paths.trace_water(segment, random, sink); }},
     Kind{&PathCounts::lit, k_lit, &PixelResult::multiple_volume,
          [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
-            ContributionSink& terms) { return paths.trace_lit_surfaces(segment, random, terms); }},
+            ContributionSink& sink) { return paths.trace_lit_surfaces(segment, random, sink); }},
     Kind{&PathCounts::surface, k_surface, &PixelResult::multiple_surface,
          [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
-            ContributionSink& terms) { return paths.trace_surface(segment, random, terms); }}};
+            ContributionSink& sink) { return paths.trace_surface(segment, random, sink); }}};
 
 }  // namespace
 
-/// The paths of one batch.
+/// One batch of paths of a pixel.
 struct PathPixels::Batch {
     std::uint64_t pixel, number;
     int samples;
@@ -80,29 +83,29 @@ struct PathPixels::Batch {
     }
 };
 
-/// Adds up terms, in the pixel and for the batch.
+/// Adds contributions to the pixel and to the sum of the current batch.
 class PathPixels::Sum final : public ContributionSink {
   public:
-    Sum(PixelResult& pixel, std::size_t bands, ContributionSink* follower = nullptr)
-        : pixel_(pixel), bands_(bands), follower_(follower) {}
+    Sum(PixelResult& pixel, std::size_t bands, ContributionSink* observer = nullptr)
+        : pixel_(pixel), bands_(bands), observer_(observer) {}
 
     std::size_t bands() const { return bands_; }
-    /// The part of the pixel's light that the next terms belong to.
+    /// Sets the part of the pixel's light to which the next contributions belong.
     void set_part(Spectrum PixelResult::*part) { part_ = part; }
-    /// Light that the water scatters here belongs to the first slab, too.
+    /// Sets the first slab: light that the water scatters there is added to backscatter_first, too.
     void set_first_slab(const Interval& slab) { first_slab_ = slab; }
-    /// Counted by the pixel's alpha.
+    /// Adds to the pixel's alpha, which counts the rays.
     void add_rays(std::size_t count) { pixel_.alpha += static_cast<double>(count); }
 
     void begin_batch() { batch_ = {}; }
-    /// The sum of all terms since begin_batch.
+    /// The sum of all contributions since begin_batch.
     const Spectrum& batch() const { return batch_; }
 
     int add_vertex(int before, const PathVertex& vertex) override {
-        return follower_ != nullptr ? follower_->add_vertex(before, vertex) : k_no_vertex;
+        return observer_ != nullptr ? observer_->add_vertex(before, vertex) : k_no_vertex;
     }
     void add(const PathContribution& term) override {
-        if (follower_ != nullptr) follower_->add(term);
+        if (observer_ != nullptr) observer_->add(term);
         add_to(pixel_.*part_, term);
         add_to(batch_, term);
         if (part_ == &PixelResult::backscatter && term.distance >= first_slab_.begin &&
@@ -123,26 +126,26 @@ class PathPixels::Sum final : public ContributionSink {
 
     PixelResult& pixel_;
     std::size_t bands_;
-    ContributionSink* follower_;
+    ContributionSink* observer_;
     Spectrum PixelResult::*part_ = &PixelResult::direct;
     Interval first_slab_{};
     Spectrum batch_;
 };
 
 void PathPixels::render(int x, int y, const PathRound& round, const TracedCallback& traced,
-                        PixelResult& result, ContributionSink* follower) const {
+                        PixelResult& result, ContributionSink* observer) const {
     thread_local PixelView view;
-    render_the_rest(x, y, round, view, result);
+    render_without_paths(x, y, round, view, result);
     const auto bands = static_cast<std::size_t>(pixels_.band_count());
     const bool has_ray = view.ray.has_value();
-    Sum sum(result, bands, follower);
+    Sum sum(result, bands, observer);
     std::array<Spectrum, PathRound::k_batches> means;
     std::array<int, PathRound::k_batches> sizes{};
     const int batches = round.batches();
     const auto pixel = (static_cast<std::uint64_t>(y) << 32) | static_cast<std::uint64_t>(x);
     for (int b = 0; b < batches; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        // As equal as can be.
+        // Batch sizes differ by no more than one.
         sizes[i] = (b + 1) * round.samples / batches - b * round.samples / batches;
         const auto number = (static_cast<std::uint64_t>(pixels_.first_sample()) << k_part_shift) +
                             static_cast<std::uint64_t>(round.number) * PathRound::k_batches + i;
@@ -150,14 +153,14 @@ void PathPixels::render(int x, int y, const PathRound& round, const TracedCallba
         trace(x, y, {pixel, number, sizes[i]}, view, sum, traced);
         means[i] = sum.batch() / sizes[i];
     }
-    const double share = 1.0 / round.samples;
-    result.alpha *= share;
+    const double weight = 1.0 / round.samples;
+    result.alpha *= weight;
     for (Spectrum PixelResult::*part :
          {&PixelResult::direct, &PixelResult::backscatter, &PixelResult::backscatter_first,
           &PixelResult::multiple_volume, &PixelResult::multiple_surface})
-        result.*part *= share;
+        result.*part *= weight;
     for (std::vector<Spectrum>* list : {&result.lamps, &result.orders, &result.reflections})
-        for (Spectrum& light : *list) light *= share;
+        for (Spectrum& light : *list) light *= weight;
     if (!has_ray) result.pixel_factor = pixels_.pixel_factor(view);
     // The variance of a batch's mean falls as 1 / its size.
     for (std::size_t band = 0; band < bands && batches > 1; ++band) {
@@ -166,23 +169,23 @@ void PathPixels::render(int x, int y, const PathRound& round, const TracedCallba
         double spread = 0;
         for (std::size_t b = 0; b < static_cast<std::size_t>(batches); ++b) {
             const double deviation = means[b][band] - mean;
-            spread += sizes[b] * share * deviation * deviation;
+            spread += sizes[b] * weight * deviation * deviation;
         }
         result.error[band] = result.pixel_factor * std::sqrt(spread / (batches - 1));
     }
     pixels_.weigh(x, y, result);
 }
 
-/// Everything but the light of the paths, which is 0 afterwards.
-void PathPixels::render_the_rest(int x, int y, const PathRound& round, PixelView& view,
-                                 PixelResult& result) const {
+/// Renders everything but the light that paths estimate, which is set to 0.
+void PathPixels::render_without_paths(int x, int y, const PathRound& round, PixelView& view,
+                                      PixelResult& result) const {
     thread_local SurfaceLight light;
-    thread_local std::vector<double> no_water;
+    thread_local std::vector<double> no_in_scatter;
     pixels_.trace(x, y, view);
     if (round.number == 0) {
-        no_water.assign(pixels_.in_scatter().value_count(), 0.0);
+        no_in_scatter.assign(pixels_.in_scatter().value_count(), 0.0);
         pixels_.light_surfaces(std::span(&view, 1), light);
-        pixels_.shade(view, light, 0, no_water, result);
+        pixels_.shade(view, light, 0, no_in_scatter, result);
         for (Spectrum& lamp : result.lamps) lamp = {};
         result.direct = {};
         result.alpha = 0;
@@ -204,9 +207,9 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
     thread_local std::vector<SurfaceSample> samples;
     thread_local std::vector<const SurfaceSample*> surfaces;
     thread_local SurfaceLight light;
-    for (int first = 0; first < batch.samples; first += k_together) {
+    for (int first = 0; first < batch.samples; first += k_rays_at_once) {
         throw_if_stopped();
-        const int end = std::min(first + k_together, batch.samples);
+        const int end = std::min(first + k_rays_at_once, batch.samples);
         rays.clear();
         indices.clear();
         samples.clear();
@@ -220,7 +223,7 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
             rays.push_back(*ray);
             indices.push_back(i);
             samples.push_back({*ray, {}, across, down});
-            if (view.ray) continue;  // a pixel whose edge alone sees water
+            if (view.ray) continue;  // only the pixel's edge sees water
             view.ray = ray;
             view.x = across;
             view.y = down;
@@ -234,11 +237,11 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
             surfaces.push_back(&samples[i]);
         }
         pixels_.transport().surfaces->evaluate(surfaces, light);
-        std::size_t in_light = 0;
+        std::size_t light_index = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const SurfaceSample* const surface = found[i] != 0 ? &samples[i] : nullptr;
-            trace_path(surface, rays[i], light, in_light, batch, indices[i], sum);
-            if (surface != nullptr) ++in_light;
+            trace_path(surface, rays[i], light, light_index, batch, indices[i], sum);
+            if (surface != nullptr) ++light_index;
             add_lamps_in_view(rays[i], surface != nullptr ? surface->hit.distance : k_far, sum);
         }
         sum.add_rays(rays.size());
@@ -246,38 +249,39 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
     }
 }
 
-/// Prepares the segment, and adds the surface's light but for that of paths.
+/// Prepares the camera segment, and adds what the surface emits and its direct light.
 void PathPixels::begin(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
-                       std::size_t in_light, CameraSegment& segment, Sum& sum) const {
+                       std::size_t light_index, CameraSegment& segment, Sum& sum) const {
     Spectrum leaving;
     if (surface != nullptr) {
         sum.set_part(&PixelResult::direct);
-        add_direct_light(pixels_.scene(), *surface, light, in_light, sum, leaving);
+        add_direct_light(pixels_.scene(), *surface, light, light_index, sum, leaving);
     }
     pixels_.transport().paths->begin(ray, surface != nullptr ? &surface->hit : nullptr,
                                      leaving.first(sum.bands()), segment);
 }
 
-/// Adds the light of lamps that the ray crosses before it meets a surface at `reach`.
-void PathPixels::add_lamps_in_view(const Ray& ray, double reach, Sum& sum) const {
+/// Adds the light of lamps that the ray crosses within `max_distance`, that of the surface it hits.
+void PathPixels::add_lamps_in_view(const Ray& ray, double max_distance, Sum& sum) const {
     thread_local std::vector<SeenLamp> lamps;
     lamps.clear();
-    pixels_.lamps_in_view().append(ray, reach, lamps);
+    pixels_.lamps_in_view().append(ray, max_distance, lamps);
     sum.set_part(&PixelResult::direct);
-    const int turn = sum.add_vertex(k_no_vertex, {PathVertex::Kind::camera, ray.origin});
+    const int vertex = sum.add_vertex(k_no_vertex, {PathVertex::Kind::camera, ray.origin});
     for (const SeenLamp& lamp : lamps)
         sum.add({.lamp = lamp.lamp,
                  .distance = lamp.distance,
                  .radiance = lamp.arriving.first(sum.bands()),
-                 .vertex = turn,
+                 .vertex = vertex,
                  .place = ray.at(lamp.distance)});
 }
 
 void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
-                            std::size_t in_light, const Batch& batch, int index, Sum& sum) const {
+                            std::size_t light_index, const Batch& batch, int index,
+                            Sum& sum) const {
     thread_local CameraSegment segment;
-    begin(surface, ray, light, in_light, segment, sum);
-    segment.multiply_paths(times_);
+    begin(surface, ray, light, light_index, segment, sum);
+    segment.multiply_paths(path_counts_);
     if (pixels_.in_scatter().parts().first_slab)
         sum.set_first_slab(pixels_.in_scatter().first_slab_along(ray));
     sum.set_part(&PixelResult::backscatter);
@@ -292,11 +296,11 @@ void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const 
 
 namespace {
 
-constexpr int k_places_across = 12;  // of a trial, in each direction
+constexpr int k_places_across = 12;  // places of a trial across and down the image
 
 }  // namespace
 
-PathTrial PathPixels::try_out(double x, double y, std::uint64_t place, int paths) const {
+PathTrial PathPixels::run_trial(double x, double y, std::uint64_t place, int paths) const {
     thread_local SurfaceLight light;
     thread_local CameraSegment segment;
     PathTrial trial;
@@ -321,34 +325,34 @@ PathTrial PathPixels::try_out(double x, double y, std::uint64_t place, int paths
     const PathTracer& tracer = *pixels_.transport().paths;
     random = batch.random(k_single, 0);
     tracer.trace_single(segment, random, sum);
-    trial.once = end_batch();
+    trial.single = end_batch();
     for (std::size_t k = 0; k < k_kinds.size(); ++k) {
         double squares = 0;
-        PathTrial::OfKind& of = trial.kinds[k];
+        PathTrial::OfKind& kind = trial.kinds[k];
         for (int i = 0; i < paths; ++i) {
             random = batch.random(k_kinds[k].stream, i);
-            of.work += k_kinds[k].trace(tracer, segment, random, sum) / paths;
+            kind.work += k_kinds[k].trace(tracer, segment, random, sum) / paths;
             const double radiance = end_batch();
-            of.mean += radiance / paths;
+            kind.mean += radiance / paths;
             squares += radiance * radiance / paths;
         }
-        of.variance = std::max(0.0, squares - of.mean * of.mean);
+        kind.variance = std::max(0.0, squares - kind.mean * kind.mean);
     }
     return trial;
 }
 
-PathTrial PathPixels::try_out(int paths) const {
+PathTrial PathPixels::run_trial(int paths) const {
     const RaySource& rays = pixels_.rays();
     std::array<PathTrial, k_places_across * k_places_across> trials;
     parallel_for(trials.size(), [&](std::size_t n) {
         const double across = static_cast<double>(n % k_places_across) + 0.5;
         const double down = static_cast<double>(n / k_places_across) + 0.5;
-        trials[n] = try_out(across * rays.width() / k_places_across,
-                            down * rays.height() / k_places_across, n, paths);
+        trials[n] = run_trial(across * rays.width() / k_places_across,
+                              down * rays.height() / k_places_across, n, paths);
     });
     PathTrial all;
     for (const PathTrial& trial : trials) {
-        all.once += trial.once;
+        all.single += trial.single;
         for (std::size_t k = 0; k < all.kinds.size(); ++k) {
             all.kinds[k].mean += trial.kinds[k].mean;
             all.kinds[k].variance += trial.kinds[k].variance;
@@ -358,59 +362,60 @@ PathTrial PathPixels::try_out(int paths) const {
     return all;
 }
 
-// For variances v and costs t of single paths, numbers in proportion to sqrt(v / t) leave the least
-// variance for the time.
-void PathPixels::share_out(int samples) {
-    constexpr int k_fewest = 8, k_most = 64;  // at each place
-    constexpr double k_share = 0.03;          // of all paths
+// Of paths with variance v and cost t, numbers in proportion to sqrt(v / t) minimize the variance
+// for a given time: 1 / (variance * time) is greatest (Veach 1997).
+void PathPixels::allocate_paths(int samples) {
+    constexpr int k_min = 8, k_max = 64;  // paths of a kind at each place
+    constexpr double k_fraction = 0.03;   // of all paths that the trial takes
     const RaySource& rays = pixels_.rays();
     const double all = static_cast<double>(rays.width()) * rays.height() * samples;
-    const PathTrial trial = try_out(std::clamp(
-        static_cast<int>(k_share * all / (k_places_across * k_places_across)), k_fewest, k_most));
-    times_ = {};
-    std::array<double, k_kinds.size()> worth{};
-    double before = 0, after = 0;
+    const PathTrial trial = run_trial(std::clamp(
+        static_cast<int>(k_fraction * all / (k_places_across * k_places_across)), k_min, k_max));
+    path_counts_ = {};
+    std::array<double, k_kinds.size()> allocation{};
+    double work = 0, allocated = 0;
     for (std::size_t k = 0; k < k_kinds.size(); ++k) {
         const PathTrial::OfKind& kind = trial.kinds[k];
         if (!(kind.work > 0)) continue;
-        worth[k] = std::sqrt(kind.variance / kind.work);
-        before += kind.work;
-        after += kind.work * worth[k];
+        allocation[k] = std::sqrt(kind.variance / kind.work);
+        work += kind.work;
+        allocated += kind.work * allocation[k];
     }
-    if (!(after > 0)) return;
+    if (!(allocated > 0)) return;
     for (std::size_t k = 0; k < k_kinds.size(); ++k)
-        times_.*k_kinds[k].count = worth[k] * before / after;
+        path_counts_.*k_kinds[k].count = allocation[k] * work / allocated;
 }
 
 namespace {
 
-// Pixels that one task renders, in a row.
+// Number of adjacent pixels that one task renders.
 constexpr int k_run = 8;
-// Paths between two reports of progress: milliseconds of work.
+// Number of paths between two reports of progress: milliseconds of work.
 constexpr std::uint64_t k_report = 64;
-// The error of so many paths is no more than a guess: more of them than it says are traced.
-constexpr double k_margin = 1.05;
-// Paths per pixel that an image is taken to need before anything is known of it.
-constexpr int k_guess = 64;
+// The standard error is itself an estimate: trace a few more paths than follow from it.
+constexpr double k_safety_factor = 1.05;
+// The number of paths per pixel that an image with a target error is assumed to need before its
+// first round.
+constexpr int k_initial_samples = 64;
 
-// Rounds are at least this fraction of the paths before them.
+// A round has at least this fraction of the paths of all previous rounds.
 constexpr double k_min_growth = 0.125;
 
 constexpr int k_batches = PathRound::k_batches;
 
-// Paths per pixel that will reach the error, all in all.
+// Returns the total number of paths per pixel that is expected to reach the error.
 double samples_needed(double error, const PathAccuracy& so_far) {
     const double ratio = so_far.error.value_or(0.0) / error;
-    return k_margin * so_far.samples * ratio * ratio;
+    return k_safety_factor * so_far.samples * ratio * ratio;
 }
 
-// Two tell an error.
-int samples_of_pixel(int in_the_mean, double worth) {
-    return std::max(2, static_cast<int>(std::lround(in_the_mean * worth)));
+// An estimate of the error takes two paths.
+int samples_of_pixel(int mean_samples, double weight) {
+    return std::max(2, static_cast<int>(std::lround(mean_samples * weight)));
 }
 
-/// What is known of the total of every pixel: the variance of its estimate, by band, its mean over
-/// the bands, and how many paths it is the mean over.
+/// Statistics of the total of every pixel: the variance of its estimate, by band, its mean over the
+/// bands, and the number of paths.
 class Spread {
   public:
     Spread(const PixelWindow& window, std::size_t bands) : window_(window), bands_(bands) {
@@ -423,27 +428,27 @@ class Spread {
         values_.assign(window.width() * static_cast<int>(bands_ + 2), window.height());
     }
 
-    /// Includes a pixel's further paths. Returns their share of all of its paths.
+    /// Merges further paths of a pixel. Returns their fraction of all of its paths.
     double merge(int x, int y, const PixelResult& result, int samples) {
         const std::span<float> own = pixel(x, y);
         float& count = own[bands_ + 1];
         count += static_cast<float>(samples);
-        const double share = samples / static_cast<double>(count);
+        const double fraction = samples / static_cast<double>(count);
         double light = 0;
         for (std::size_t b = 0; b < bands_; ++b) {
-            const double before = (1 - share) * (1 - share) * static_cast<double>(own[b]);
-            const double more = share * result.error[b];
+            const double before = (1 - fraction) * (1 - fraction) * static_cast<double>(own[b]);
+            const double more = fraction * result.error[b];
             own[b] = static_cast<float>(before + more * more);
             light += result.direct[b] + result.backscatter[b] + result.multiple_volume[b] +
                      result.multiple_surface[b];
         }
         const double mean = result.pixel_factor * light / static_cast<double>(bands_);
         own[bands_] =
-            static_cast<float>((1 - share) * static_cast<double>(own[bands_]) + share * mean);
-        return share;
+            static_cast<float>((1 - fraction) * static_cast<double>(own[bands_]) + fraction * mean);
+        return fraction;
     }
 
-    /// Paths per pixel, in the mean.
+    /// The mean number of paths per pixel.
     int samples() const {
         double sum = 0;
         for (int y = window_.y0; y < window_.y1; ++y)
@@ -452,16 +457,16 @@ class Spread {
         return static_cast<int>(std::lround(sum / window_.width() / window_.height()));
     }
 
-    /// How many paths each pixel is worth, relative to the mean over all: as many as leave the
-    /// image the least error, in proportion to the deviation of a single path. That is guessed from
-    /// the pixels around it and never from its own paths: a pixel which happens to be too dark has
-    /// found no bright path and seems to need few more, so that its own choice would make it darker
-    /// than it is.
-    Grid2D<float> worths() const {
-        constexpr int k_reach = 3;
-        constexpr double k_min_worth = 0.25, k_max_worth = 8;
-        Grid2D<float> worths;
-        worths.assign(window_.width(), window_.height());
+    /// Returns the number of paths for each pixel in the next rounds, relative to the mean over all
+    /// pixels. Numbers in proportion to the standard deviation of a single path give the least
+    /// error of the image. The deviation is estimated from the pixels around a pixel, never from
+    /// its own paths, since adapting to these would bias it: a pixel that is too dark by chance has
+    /// found no bright path, seems to need few more, and would stay too dark.
+    Grid2D<float> find_path_weights() const {
+        constexpr int k_radius = 3;
+        constexpr double k_min_weight = 0.25, k_max_weight = 8;
+        Grid2D<float> path_weights;
+        path_weights.assign(window_.width(), window_.height());
         const auto deviation = [&](int x, int y) {
             double variance = 0;
             for (const float of_band : pixel(x, y).first(bands_))
@@ -471,30 +476,30 @@ class Spread {
         double mean = 0;
         for (int y = window_.y0; y < window_.y1; ++y)
             for (int x = window_.x0; x < window_.x1; ++x) mean += deviation(x, y);
-        mean /= static_cast<double>(worths.size());
+        mean /= static_cast<double>(path_weights.size());
         parallel_for(static_cast<std::size_t>(window_.height()), [&](std::size_t row) {
             const int y = window_.y0 + static_cast<int>(row);
             for (int x = window_.x0; x < window_.x1; ++x) {
                 double sum = 0;
                 int count = 0;
-                for (int v = std::max(y - k_reach, window_.y0);
-                     v < std::min(y + k_reach + 1, window_.y1); ++v) {
-                    for (int u = std::max(x - k_reach, window_.x0);
-                         u < std::min(x + k_reach + 1, window_.x1); ++u) {
+                for (int v = std::max(y - k_radius, window_.y0);
+                     v < std::min(y + k_radius + 1, window_.y1); ++v) {
+                    for (int u = std::max(x - k_radius, window_.x0);
+                         u < std::min(x + k_radius + 1, window_.x1); ++u) {
                         if (u == x && v == y) continue;
                         sum += deviation(u, v);
                         ++count;
                     }
                 }
-                const double worth = count > 0 && mean > 0 ? sum / count / mean : 1;
-                worths(x - window_.x0, y - window_.y0) =
-                    static_cast<float>(std::clamp(worth, k_min_worth, k_max_worth));
+                const double weight = count > 0 && mean > 0 ? sum / count / mean : 1;
+                path_weights(x - window_.x0, y - window_.y0) =
+                    static_cast<float>(std::clamp(weight, k_min_weight, k_max_weight));
             }
         });
-        return worths;
+        return path_weights;
     }
 
-    /// The standard error of the whole image, relative to its mean.
+    /// Returns the standard error of the whole image, relative to its mean.
     double error() const {
         double variance = 0, mean = 0;
         for (int y = window_.y0; y < window_.y1; ++y) {
@@ -509,7 +514,7 @@ class Spread {
         return std::sqrt(variance / (pixels * static_cast<double>(bands_))) / (mean / pixels);
     }
 
-    /// The standard error of a pixel, by band.
+    /// Writes the standard error of a pixel, by band.
     void store_error(int x, int y, std::span<float> channels) const {
         const std::span<const float> own = pixel(x, y);
         for (std::size_t b = 0; b < bands_; ++b)
@@ -532,7 +537,7 @@ class Spread {
     Grid2D<float> values_;
 };
 
-/// Tells how far an image has got, whose number of paths may not be known yet.
+/// Reports the progress of an image whose total number of paths may not be known yet.
 class RoundProgress {
   public:
     RoundProgress(const ProgressCallback& progress, const PixelWindow& window)
@@ -540,12 +545,12 @@ class RoundProgress {
 
     void begin_round(double samples_in_all) { all_ = pixels_ * samples_in_all; }
 
-    /// From any thread.
+    /// Thread safe.
     void add(int paths) {
         const auto more = static_cast<std::uint64_t>(paths);
         const std::uint64_t before = done_.fetch_add(more);
         if (before / k_report == (before + more) / k_report) return;
-        // The rest may take longer than foreseen.
+        // The rest may take longer than expected.
         constexpr double k_almost = 0.99;
         progress_(std::min(k_almost, static_cast<double>(before + more) / all_));
     }
@@ -564,10 +569,11 @@ int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far) {
     if (so_far.samples == 0) return k_batches;
     const int possible = k_max_paths - so_far.samples;
     if (possible <= 0 || so_far.error.value_or(0.0) <= *goal.error) return 0;
-    // Batches of 2^k paths cover their dimensions best. The next round may correct a round too few.
+    // Prefer batches of 2^k paths, which the lattice stratifies best. A round that turns out too
+    // small is made up for by the next.
     const double missing = samples_needed(*goal.error, so_far) - so_far.samples;
-    const double most = std::min({missing, 2.0 * so_far.samples, static_cast<double>(possible)});
-    const double wanted = std::max(most, k_min_growth * so_far.samples);
+    const double needed = std::min({missing, 2.0 * so_far.samples, static_cast<double>(possible)});
+    const double wanted = std::max(needed, k_min_growth * so_far.samples);
     int samples = k_batches;
     while (2 * samples <= wanted) samples *= 2;
     return std::min(samples, possible);
@@ -594,7 +600,7 @@ void PathPass::run(Rendering& rendering) {
     const PathGoal goal{samples_of(rendering.desc.render), request_.error};
     const ProgressCallback progress = rendering.progress_of(stage());
     PathPixels pixels(rendering.pixels, plan.order_count());
-    pixels.share_out(goal.error ? k_guess : goal.samples);
+    pixels.allocate_paths(goal.error ? k_initial_samples : goal.samples);
     Film& film = rendering.film;
     const PixelWindow& window = film.window();
     Spread spread(window, plan.band_count());
@@ -603,13 +609,14 @@ void PathPass::run(Rendering& rendering) {
     const auto tasks = static_cast<std::size_t>(runs) * static_cast<std::size_t>(window.height());
     PathAccuracy accuracy;
     PathRound round;
-    Grid2D<float> worths;  // of the pixels, once the first round has told them
+    Grid2D<float> path_weights;  // of the pixels, set after the first round
     for (; (round.samples = samples_of_next_round(goal, accuracy)) > 0; ++round.number) {
         const int samples = accuracy.samples + round.samples;
         double in_all = samples;
         if (goal.error)
-            in_all = std::clamp(round.number == 0 ? k_guess : samples_needed(*goal.error, accuracy),
-                                in_all, static_cast<double>(k_max_paths));
+            in_all = std::clamp(
+                round.number == 0 ? k_initial_samples : samples_needed(*goal.error, accuracy),
+                in_all, static_cast<double>(k_max_paths));
         so_far.begin_round(in_all);
         parallel_for(tasks, [&](std::size_t task) {
             thread_local PixelResult result;
@@ -619,22 +626,23 @@ void PathPass::run(Rendering& rendering) {
                 PathRound of_pixel = round;
                 if (round.number > 0)
                     of_pixel.samples = samples_of_pixel(
-                        round.samples, static_cast<double>(worths(x - window.x0, y - window.y0)));
+                        round.samples,
+                        static_cast<double>(path_weights(x - window.x0, y - window.y0)));
                 pixels.render(
                     x, y, of_pixel, [&](int paths) { so_far.add(paths); }, result);
-                const double share = spread.merge(x, y, result, of_pixel.samples);
+                const double fraction = spread.merge(x, y, result, of_pixel.samples);
                 if (round.number == 0)
                     store_pixel(result, plan, rendering.colour, film.pixel(x, y));
                 else
-                    merge_paths(result, share, plan, rendering.colour, film.pixel(x, y));
+                    merge_paths(result, fraction, plan, rendering.colour, film.pixel(x, y));
                 if (result.shows_lamp) film.mark_lamp(x, y);
             }
         });
         accuracy.samples = spread.samples();
         if (samples > 1) accuracy.error = spread.error();
-        // By the first round alone: by later ones, which are of different sizes, a pixel's paths
-        // would depend on its own after all.
-        if (goal.error && round.number == 0) worths = spread.worths();
+        // Compute them from the first round alone: the sizes of later rounds depend on them, so
+        // that the number of a pixel's paths would depend on its own estimate after all.
+        if (goal.error && round.number == 0) path_weights = spread.find_path_weights();
         rendering.reached.paths = accuracy;
     }
     if (plan.has(Layer::error))

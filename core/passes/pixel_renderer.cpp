@@ -16,10 +16,10 @@ namespace uw {
 
 namespace {
 
-// Other numbers than for light paths.
+// Differs from the seeds of light paths.
 constexpr std::uint64_t k_sampling_seed = 0x61706572;
 
-// Base-2 radical inverse: 0, 1/2, 1/4, 3/4, ...; of other bases likewise.
+// Radical inverse: for base 2, 0, 1/2, 1/4, 3/4, ...
 template <unsigned base>
 double radical_inverse(int number) {
     double result = 0, digit = 1.0 / base;
@@ -62,7 +62,7 @@ void find_matches(const PointMatchers& matchers, std::span<PixelView> views) {
     thread_local std::vector<const SurfaceHit*> hits;
     thread_local std::vector<std::optional<PointMatch>> matches;
     hits.clear();
-    // What is seen in the water's surface is on no point of it.
+    // The mirror image that the water's surface shows is not at a point of that surface.
     const auto has_point = [](const PixelView& view) {
         return view.has_hit && !view.hit.is_water_surface;
     };
@@ -97,22 +97,22 @@ void store_matches(const PointMatchers& matchers, const PixelView& view, PixelRe
 
 namespace {
 
-// The identifier behind each id, of which 0 is nothing.
+// Returns the Cryptomatte identifier of each id; 0 is no surface.
 std::vector<float> matte_ids(const std::vector<SurfaceName>& names) {
     std::vector<float> ids{0.0F};
     for (const SurfaceName& name : names) ids.push_back(matte_id(name.name));
     return ids;
 }
 
-// Surface samples whose distances agree to within this fraction share one integral through the
-// water: their in-scatter differs by less than 1 % of that of the last centimetres.
+// Surface samples whose distances agree to within this fraction share one in-scattering integral:
+// it differs between them by less than 1 % of that of the last centimetres.
 constexpr double k_same_distance = 0.01;
-// Samples on the object seen at the pixel's centre are assigned the centre's distance if theirs is
-// this close to it: to first order the mean over a slanted surface is its centre, and the water ray
-// does not continue behind the surface it hits.
+// Samples on the object at the pixel's centre get the centre's distance if theirs agrees with it to
+// within this fraction: the mean over a slanted surface is, to first order, its centre, and the ray
+// through the water does not continue behind the surface that it hits.
 constexpr double k_same_surface = 0.25;
 
-// Derives the view's distances and weights from its samples, merging distances that agree.
+// Sets the view's distances and weights from those of its samples. Distances that agree are merged.
 void group_distances(std::vector<double>& distances, int samples, PixelView& view) {
     std::sort(distances.begin(), distances.end());
     for (std::size_t first = 0; first < distances.size();) {
@@ -206,7 +206,8 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
 
 namespace {
 
-/// What of a surface one of the `count` samples of a pixel stands for. `textures`: null: none.
+/// The footprint on surfaces of one of the `count` samples of a pixel, over which textures are
+/// filtered. `textures` is null if there are none.
 class SampleSpread {
   public:
     SampleSpread(const RaySource& rays, const TexturedSurfaces* textures, const PixelView& view,
@@ -214,16 +215,17 @@ class SampleSpread {
         : rays_(rays), textures_(view.ray ? textures : nullptr), x_(view.x), y_(view.y) {
         if (textures_ == nullptr) return;
         center_ = *view.ray;
-        // Samples lie less evenly than squares of their share would.
+        // A footprint is wider than an equal part of the pixel, since samples do not lie on a
+        // regular grid.
         constexpr double k_overlap = 1.5;
-        if (count > 1) share_ = std::min(1.0, k_overlap / std::sqrt(static_cast<double>(count)));
+        if (count > 1) width_ = std::min(1.0, k_overlap / std::sqrt(static_cast<double>(count)));
     }
 
-    /// Takes the textures of a hit over it. The pixel's own ray passes near that of each sample,
-    /// through whatever point of the aperture.
+    /// Filters the textures at a hit over the footprint. It follows from the pixel's own ray, near
+    /// which the rays of all samples pass, whatever their points of the aperture.
     void filter_textures(SurfaceHit& hit) {
         if (textures_ == nullptr || !textures_->is_textured(hit)) return;
-        if (!std::exchange(has_beside_, true)) {
+        if (!std::exchange(has_neighbours_, true)) {
             right_ = rays_.refracted_ray(x_ + 1, y_);
             below_ = rays_.refracted_ray(x_, y_ + 1);
         }
@@ -231,32 +233,32 @@ class SampleSpread {
     }
 
   private:
-    /// From where the pixel's ray meets the plane of a hit towards where `beside` does; zero if one
-    /// never does.
-    Vector3 step_on(const SurfaceHit& hit, const std::optional<Ray>& beside) const {
+    /// Returns the vector from the intersection of the pixel's ray with the plane of a hit to that
+    /// of the ray `neighbour`; zero if one of them misses the plane.
+    Vector3 step_on(const SurfaceHit& hit, const std::optional<Ray>& neighbour) const {
         const auto meet = [&](const Ray& ray) -> std::optional<Point3> {
             const double slope = glm::dot(ray.direction, hit.geometric_normal);
             const double s = glm::dot(hit.position - ray.origin, hit.geometric_normal) / slope;
             if (!(s > 0) || !std::isfinite(s)) return std::nullopt;
             return ray.at(s);
         };
-        if (!beside) return Vector3(0.0);
-        const auto here = meet(center_), there = meet(*beside);
-        return here && there ? share_ * (*there - *here) : Vector3(0.0);
+        if (!neighbour) return Vector3(0.0);
+        const auto here = meet(center_), there = meet(*neighbour);
+        return here && there ? width_ * (*there - *here) : Vector3(0.0);
     }
 
     const RaySource& rays_;
     const TexturedSurfaces* textures_;
     double x_, y_;  // of the pixel's ray
     Ray center_;
-    bool has_beside_ = false;           // whether these are known:
-    std::optional<Ray> right_, below_;  // a pixel further on
-    double share_ = 1;
+    bool has_neighbours_ = false;       // whether right_ and below_ are set
+    std::optional<Ray> right_, below_;  // one pixel further to the right and below
+    double width_ = 1;                  // of the footprint [pixels]
 };
 
 }  // namespace
 
-// The ray of a single sample is that of the ground truth, but for its textures.
+// A single sample has the ray of the ground truth, but its textures are filtered.
 void PixelRenderer::add_center(PixelView& view) const {
     if (!view.ray) return;
     view.alpha = 1;
@@ -337,7 +339,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
         for (double& transmittance : result.transmittance.first(bands))
             transmittance /= static_cast<double>(view.samples.size());
     for (const SeenLamp& lamp : view.lamps) add_lamp(lamp, result);
-    add_seen(view, result);
+    add_mattes(view, result);
     if (!view.ray) return;
     add_water(in_scatter, result);
     result.pixel_factor = pixel_factor(view);
@@ -386,7 +388,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
                                 std::size_t sample, PixelResult& result) const {
     const SurfaceHit& hit = surface.hit;
     const double weight = 1.0 / samples_.count;
-    const double seen = sensor_.surface_factor(hit.distance);
+    const double factor = sensor_.surface_factor(hit.distance);
     const auto bands = static_cast<std::size_t>(band_count());
     const std::span<const double> to_camera = light.to_camera(sample);
     const SurfaceReflection reflection(*scene_.surfaces, surface, band_count());
@@ -395,7 +397,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
         const auto sky =
             result.lamps.empty() ? std::nullopt : lamp_of_emission(*scene_.surfaces, hit);
         for (std::size_t b = 0; b < bands; ++b) {
-            const double emission = weight * reflection.emission()[b] * seen;
+            const double emission = weight * reflection.emission()[b] * factor;
             result.clean[b] += emission;
             result.direct[b] += emission * to_camera[b];
             if (sky) result.lamps[*sky][b] += emission * to_camera[b];
@@ -412,7 +414,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
         // One loop instead of a spectrum per product: this runs for every sample and every emitter.
         for (std::size_t b = 0; b < bands; ++b) {
             const double irradiance = weight * light.irradiance(sample, j, b);
-            const double response = brdf[b] * seen;
+            const double response = brdf[b] * factor;
             const double direct = irradiance * response * to_camera[b];
             result.irradiance[b] += irradiance;
             result.exitance[b] += irradiance * hit.reflectance[b];
@@ -423,7 +425,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
     }
 }
 
-void PixelRenderer::add_seen(const PixelView& view, PixelResult& result) const {
+void PixelRenderer::add_mattes(const PixelView& view, PixelResult& result) const {
     const auto id_of = [](const std::vector<float>& ids, std::uint32_t number) {
         return number < ids.size() ? ids[number] : 0.0F;
     };
@@ -452,7 +454,7 @@ void PixelRenderer::add_water(std::span<const double> in_scatter, PixelResult& r
         if (!result.lamps.empty()) add(result.lamps[group].first(values.size()), values);
     }
     if (!in_scatter_.parts().first_slab) return;
-    // A difference of sums, which are rounded and interpolated.
+    // The first slab is a difference of rounded and interpolated sums, which may be negative.
     std::ranges::transform(in_scatter_.first_slab(in_scatter), result.backscatter_first.begin(),
                            [](double value) { return std::max(0.0, value); });
 }

@@ -22,8 +22,8 @@ namespace uw {
 
 class TexturedSurfaces;
 
-/// The point of the aperture that belongs to a point of the unit square, evenly, by squares that
-/// become rings (Shirley and Chiu 1997): neighbours stay neighbours.
+/// Maps a point of the unit square to the aperture by the concentric map, which preserves area and
+/// keeps neighbours close (Shirley and Chiu 1997).
 inline AperturePoint aperture_point(double a, double b) {
     const double x = 2 * a - 1, y = 2 * b - 1;
     if (x == 0 && y == 0) return {};
@@ -34,34 +34,35 @@ inline AperturePoint aperture_point(double a, double b) {
     return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// The samples of every pixel.
+/// The number of samples of every pixel.
 struct PixelSamples {
-    int count = 1;  ///< >= 1; a single one lies at the pixel's centre
-    /// The samples of an exposure whose parts cover the pixel together: how many there are in all
-    /// parts, and how many in those before this one. 0: the image is no part.
+    int count = 1;  ///< >= 1; a single sample lies at the pixel's centre
+    /// If the image is a part of an exposure, whose parts together cover the pixel: the number of
+    /// samples in all parts, and in those before this one. `total` is 0 otherwise.
     int total = 0, first = 0;
 };
 
-/// A place in a pixel, from its corner [pixels].
+/// A position in a pixel, from its corner [pixels].
 struct ImageOffset {
     double x, y;
 };
 
-/// Where in a pixel, through which point of the aperture and when its samples are taken: evenly in
-/// each, and in all of them together. Places are the same in all pixels, points and moments differ,
-/// as the same ones in all would show as many sharp images.
+/// The samples of a pixel: positions in it, points of the aperture and times, stratified in each
+/// and in all of them together. All pixels have the same positions, but different aperture points
+/// and times: if these were the same, a blur would consist of several sharp images.
 class PixelSampling {
   public:
-    /// The samples are those of pixel (x, y).
+    /// Makes the samples of pixel (x, y).
     PixelSampling(const PixelSamples& samples, int x, int y);
 
-    /// The place of sample `i` < count. They are Hammersley points: every sample has its own row
-    /// and column of the pixel, and a single one has the centre. In a part of an exposure, whose
-    /// samples are in the order of time, they are Halton points: those that follow each other cover
-    /// the pixel, too.
+    /// The position of sample `i` < count, a Hammersley point: every sample has its own row and
+    /// column of the pixel, and a single one has the centre. In a part of an exposure, whose
+    /// samples are ordered by time, it is a Halton point, so that successive samples cover the
+    /// pixel, too.
     ImageOffset offset(int i) const;
     AperturePoint aperture(int i) const;
-    /// The moment of the exposure or of its part, 0 to 1: one in each of `count` equal spans.
+    /// The time of sample `i` in the exposure or its part, 0 to 1: one in each of `count` equal
+    /// intervals.
     double moment(int i) const { return (i + shift_moment_) / samples_.count; }
 
   private:
@@ -69,28 +70,29 @@ class PixelSampling {
     double shift_a_, shift_b_, shift_moment_;
 };
 
-/// Looks for the points at the centres of neighbouring pixels in the other images: sets
-/// PixelView::matches of the views that have one.
+/// Finds the points at the pixels' centres in the other images: sets PixelView::matches of the
+/// views that have a point.
 void find_matches(const PointMatchers& matchers, std::span<PixelView> views);
 
-/// Makes of them flow and disparity. Precondition: the view has a point, and its matches were
-/// found.
+/// Derives flow and disparity from the matches of a view. Precondition: the view has a point, and
+/// find_matches was called.
 void store_matches(const PointMatchers& matchers, const PixelView& view, PixelResult& result);
 
-/// Turns light transport into pixels: many samples to antialias surfaces, one ray for the water.
+/// Renders pixels by single scattering: many samples antialias the surfaces, and a single ray
+/// integrates in-scattering.
 class PixelRenderer {
   public:
-    /// All references must outlive the renderer. The first of `slabs` is the water of
-    /// `backscatter_first`. `sensor` determines the quantity that the image holds: by default
-    /// radiance. `matchers` look for the points of the image in others.
+    /// All references must outlive the renderer. The first of `slabs` is that of
+    /// `backscatter_first`. `sensor` determines the quantity that the image contains: by default
+    /// radiance. `matchers` find the points of the image in others.
     PixelRenderer(const RaySource& rays, const LitScene& scene, const LightTransport& transport,
                   const PixelSamples& samples, const Slabs& slabs, const SensorModel& sensor = {},
                   const InScatterParts& parts = {}, const PointMatchers& matchers = {});
 
-    /// By what the light of a pixel is multiplied, by band, before it is stored: weight(x, y).
+    /// weight(x, y) is the factor, by band, on the light of a pixel before it is stored.
     using PixelWeight = std::function<Spectrum(int x, int y)>;
     void set_weight(PixelWeight weight) { weight_ = std::move(weight); }
-    /// Does so.
+    /// Multiplies the light of a pixel by its weight, if there is one.
     void weigh(int x, int y, PixelResult& result) const {
         if (weight_ && result.alpha > 0) result.dim(weight_(x, y));
     }
@@ -98,11 +100,11 @@ class PixelRenderer {
     int lamp_count() const { return static_cast<int>(scene_.lamp_count()); }
     int band_count() const { return scene_.medium->band_count(); }
     int samples() const { return samples_.count; }
-    /// PixelSamples::first: of light paths, too.
+    /// PixelSamples::first, which holds for light paths, too.
     int first_sample() const { return samples_.first; }
     const RaySource& rays() const { return rays_; }
     const RayInScatter& in_scatter() const { return in_scatter_; }
-    /// The same in parts that add up to it, each to be interpolated between pixels by itself.
+    /// The same in parts that add up to it. Each is interpolated between pixels by itself.
     std::span<const RayInScatter> in_scatter_parts() const {
         return parts_.empty() ? std::span(&in_scatter_, 1) : std::span(parts_);
     }
@@ -113,33 +115,34 @@ class PixelRenderer {
 
     /// Traces the samples of pixel (x, y). Thread safe.
     void trace(int x, int y, PixelView& view) const;
-    /// Traces the samples of all pixels of a window: faster than one pixel at a time.
+    /// Traces the samples of all pixels of a window, which is faster than one pixel at a time.
     void trace(const PixelWindow& window, Grid2D<PixelView>& views) const;
-    /// Light on the surfaces that pixels see; the samples of the views follow one another in
-    /// `light`. Thread safe.
+    /// Evaluates the light on the surfaces that pixels see. `light` has the samples of the views
+    /// one after another. Thread safe.
     void light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const;
-    /// Assembles a pixel from the samples of `light` from `first_sample` on and the in-scatter
-    /// values `in_scatter` (RayInScatter). `result` is reused storage. Thread safe.
+    /// Assembles a pixel from the samples of `light`, beginning at `first_sample`, and the values
+    /// `in_scatter` (RayInScatter). `result` is reused storage. Thread safe.
     void shade(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
                std::span<const double> in_scatter, PixelResult& result) const;
-    /// The factor of a pixel's light in the image, PixelResult::pixel_factor; 1 without a ray.
+    /// Returns the factor on a pixel's light in the image, PixelResult::pixel_factor; 1 without a
+    /// ray.
     double pixel_factor(const PixelView& view) const;
-    /// Only ground truth: where the ray of the pixel's centre hits, and where that is in other
-    /// images. Thread safe.
+    /// Finds ground truth alone: where the ray through the pixel's centre hits, and where that
+    /// point is in other images. Thread safe.
     void find_truth(int x, int y, PixelResult& result) const;
-    /// All of the above for a single pixel.
+    /// Does all of the above for a single pixel.
     void render(int x, int y, PixelResult& result) const;
 
   private:
     void add_surface(const SurfaceSample& surface, const SurfaceLight& light, std::size_t sample,
                      PixelResult& result) const;
-    // For mattes: notes what the samples see.
-    void add_seen(const PixelView& view, PixelResult& result) const;
+    // Records the objects and materials that the samples see, for mattes.
+    void add_mattes(const PixelView& view, PixelResult& result) const;
     void add_lamp(const SeenLamp& lamp, PixelResult& result) const;
     void add_water(std::span<const double> in_scatter, PixelResult& result) const;
-    // Starts a view with the ray through the pixel's centre.
+    // Begins a view with the ray through the pixel's centre.
     void begin_view(int x, int y, PixelView& view) const;
-    // Takes the ground truth from the ray's hit, if it has one.
+    // Sets the ground truth from the ray's hit, if there is one.
     void finish_ground_truth(PixelView& view) const;
     void store_truth(const PixelView& view, PixelResult& result) const;
     // Makes the pixel's centre its only sample.
@@ -155,7 +158,7 @@ class PixelRenderer {
     RayInScatter in_scatter_;
     std::vector<RayInScatter> parts_;  // of LightTransport::parts
     LampsInView lamps_in_view_;
-    const TexturedSurfaces* textures_;  // null: no surface has any
+    const TexturedSurfaces* textures_;  // null: no surface has textures
     PointMatchers matchers_;
     PixelWeight weight_;                                  // null: 1
     std::vector<float> object_mattes_, material_mattes_;  // by SurfaceHit's ids

@@ -7,19 +7,18 @@
 
 namespace uw {
 
-// The light of a pixel term by term, each with its way.
+// The light of a pixel, contribution by contribution, each with its path.
 
-/// Adds what a surface sends straight to the camera: what it emits, and what it reflects of each
-/// emitter's light, `light` at the place `in_light`. `leaving`: its radiance at the surface itself
-/// is added [W m^-2 sr^-1].
+/// Adds the direct light of a surface: what it emits, and what it reflects of each emitter's light,
+/// which is number `light_index` of `light`. Adds the radiance at the surface itself to `leaving`
+/// [W m^-2 sr^-1].
 void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
-                      const SurfaceLight& light, std::size_t in_light, ContributionSink& terms,
+                      const SurfaceLight& light, std::size_t light_index, ContributionSink& sink,
                       Spectrum& leaving);
 
-/// Adds all that PixelRenderer sums up for a pixel, light scattered or reflected once: the samples
-/// of `view`, whose light is `light`, lamps in view, and every node of `water` on its ray.
+/// Adds all single scattering of a pixel, which PixelRenderer sums: the samples of `view`, whose
+/// light is `light`, the lamps in view, and every quadrature node of `water` on the pixel's ray.
 void add_quadrature_terms(const PixelRenderer& pixels, const VolumeIntegrator& water,
-                          const PixelView& view, const SurfaceLight& light,
-                          ContributionSink& terms);
+                          const PixelView& view, const SurfaceLight& light, ContributionSink& sink);
 
 }  // namespace uw

@@ -14,7 +14,7 @@
 
 namespace uw {
 
-/// Where a point that one image sees is in another.
+/// The position in another image of a point that one image sees.
 struct PointMatch {
     /// Image position [pixels], perhaps outside the image; NaN where the camera cannot image it.
     double x = std::numeric_limits<double>::quiet_NaN();
@@ -22,24 +22,24 @@ struct PointMatch {
     bool is_occluded = true;  ///< hidden by a surface, or not within the image
 };
 
-/// Finds the surface points of one image in another of the scene: of another frame, or of another
-/// camera. Thread safe.
+/// Finds the surface points of one image in another image of the scene: of another frame, or of
+/// another camera. Thread safe.
 class PointMatcher {
   public:
     virtual ~PointMatcher() = default;
 
-    /// `matches[i]` is that of `hits[i]`, none for a point that has no counterpart; neighbours
-    /// together cost less.
+    /// Sets `matches[i]` to the match of `hits[i]`, none for a point without a counterpart. A
+    /// single call for neighbouring points is faster than one for each.
     virtual void match(std::span<const SurfaceHit* const> hits,
                        std::span<std::optional<PointMatch>> matches) const = 0;
 };
 
-/// Where a point is in other images, as far as they are asked for (PointMatchers).
+/// The matches of a point in the images of PointMatchers.
 struct PointMatches {
     std::optional<PointMatch> next, previous, other_camera;
 };
 
-/// The images in which the points of an image are looked for; null: not wanted, or there is none.
+/// The images in which the points of an image are searched; null: not wanted, or there is none.
 struct PointMatchers {
     const PointMatcher* next = nullptr;      ///< frame
     const PointMatcher* previous = nullptr;  ///< frame
@@ -49,15 +49,17 @@ struct PointMatchers {
 
 /// What the rays of one pixel hit, before any lighting. Reused storage.
 struct PixelView {
-    double alpha = 0;        // fraction of the samples whose ray enters the water
-    std::optional<Ray> ray;  // along which the pixel's water is integrated, if one enters it
-    double x = 0, y = 0;     // image position of that ray
-    /// The distances to which the pixel's water extends [m along `ray`, ascending; k_far without a
-    /// surface], and the fraction of the samples for each. Empty without a ray.
+    double alpha = 0;  // fraction of the samples whose ray enters the water
+    std::optional<Ray>
+        ray;  // along which in-scattering is integrated; none if no ray enters the water
+    double x = 0, y = 0;  // image position of that ray
+    /// The distances up to which in-scattering is integrated [m along `ray`, ascending; k_far
+    /// without a surface], and the fraction of the samples that each stands for. Empty without a
+    /// ray.
     std::vector<double> distances, weights;
 
     std::vector<SurfaceSample> samples;  // those that hit a surface
-    std::vector<SeenLamp> lamps;         // that any sample sees, one for each of these
+    std::vector<SeenLamp> lamps;         // one for each sample that sees a lamp
 
     // Ground truth at the pixel's centre:
     bool has_hit = false;
@@ -68,18 +70,18 @@ struct PixelView {
     PointMatches matches;
 };
 
-/// The parts of the in-scatter that an image requires.
+/// The parts into which an image needs in-scattered light to be separated.
 struct InScatterParts {
-    bool lamps = true;       // each lamp separately, not only the sum
-    bool first_slab = true;  // of the first slab
+    bool lamps = true;       // each lamp, not only their sum
+    bool first_slab = true;  // the first slab
 };
 
-/// The in-scatter along a ray up to a distance, as a list of values that can be interpolated: the
-/// bands for each lamp (or for all lamps together), then those for the first slab, if requested [W
-/// m^-2 sr^-1].
+/// Integrates the in-scattered radiance along a ray up to given distances. The result for each is a
+/// list of values that can be interpolated [W m^-2 sr^-1]: the bands of each lamp (or of all lamps
+/// together), followed by those of the first slab, if requested.
 class RayInScatter {
   public:
-    /// `integrator` must outlive this object; the first slab is that of `slabs`.
+    /// `integrator` must outlive this object.
     RayInScatter(const Integrator& integrator, const Affine& world_from_camera, const Slabs& slabs,
                  int lamps, int bands, const InScatterParts& parts);
 
