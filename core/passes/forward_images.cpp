@@ -37,7 +37,7 @@ InScatterSlabs::InScatterSlabs(const LitScene& scene, const Integrator& integrat
 
 void InScatterSlabs::join_pairs(double end, const Interval& kept) {
     std::vector<double> joined;
-    bool dropped = false;  // whether the face before was
+    bool dropped = false;  // whether the previous face was dropped
     for (std::size_t i = 0; i < faces_.size(); ++i) {
         const double face = faces_[i];
         dropped = !dropped && i > 0 && i + 1 < faces_.size() && faces_[i + 1] < end &&
@@ -103,13 +103,14 @@ void InScatterSlabs::fill_slab(const Ray& ray, double begin, double end, double 
     measure(end, part);
     measure(behind, whole);
     slab.weight = weight(path, whole);
-    const Spectrum seen = weight(path, part);
-    constexpr double k_least = std::numeric_limits<float>::min();
+    const Spectrum visible = weight(path, part);
+    constexpr double k_min = std::numeric_limits<float>::min();
     for (Spectrum& lamp : slab.lamps)
         for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation_.band_count); ++b)
-            // Rounding may make a difference negative; cumulative in-scatter never decreases.
-            lamp[b] = seen[b] > k_least ? std::max(0.0, lamp[b]) / seen[b] : 0.0;
-    path.add(0.5, part.length, part.columns);  // to the middle
+            // Cumulative in-scattering never decreases, so negative differences are due to
+            // rounding.
+            lamp[b] = visible[b] > k_min ? std::max(0.0, lamp[b]) / visible[b] : 0.0;
+    path.add(0.5, part.length, part.columns);  // to the middle of the visible part
     slab.to_camera.add(1, path.length, path.columns);
     paths_.add_mean(1, ray.at(path.length), slab.to_lamps);
     path.add(0.5, part.length, part.columns);
@@ -121,7 +122,8 @@ Spectrum InScatterSlabs::weight(const WaterPath& path, const WaterPath& part) co
     return per_band(static_cast<std::size_t>(attenuation_.band_count), [&](std::size_t band) {
         const double tau = attenuation_.optical_depth(band, path.length, path.columns);
         const double more = attenuation_.optical_depth(band, part.length, part.columns);
-        // Assumes that e^-tau falls exponentially along the segment: exact in uniform water.
+        // This assumes that e^-tau falls exponentially along the segment, which is exact in uniform
+        // water.
         const double mean = more > 0 ? -std::expm1(-more) / more : 1.0;
         return length * std::exp(-tau) * mean;
     });
@@ -193,14 +195,14 @@ void VisibleWater::set(std::size_t pixel, const PixelView& view, const RayDepth&
         behind = i;
     }
     const auto store = [&](std::size_t part, std::size_t begin, std::size_t end) {
-        double share = 0, sum = 0;
+        double fraction = 0, sum = 0;
         for (std::size_t i = begin; i < end; ++i) {
-            share += view.weights[i];
+            fraction += view.weights[i];
             sum += view.weights[i] * depth.z(view.distances[i]);
         }
-        if (!(share > 0)) return;
-        share_[pixel][part] = static_cast<float>(share);
-        depths_[part][pixel] = static_cast<float>(sum / share);
+        if (!(fraction > 0)) return;
+        fractions_[pixel][part] = static_cast<float>(fraction);
+        depths_[part][pixel] = static_cast<float>(sum / fraction);
     };
     store(0, 0, behind);
     store(1, behind, count);

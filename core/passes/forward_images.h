@@ -16,7 +16,8 @@
 
 namespace uw {
 
-/// A path through the water: its length [m] and the columns along it [unit m].
+/// A path through the water, or a mean of paths: its length [m] and the column densities along it
+/// [unit m].
 struct WaterPath {
     double length = 0;
     std::vector<double> columns;  // one per constituent
@@ -32,17 +33,17 @@ struct WaterPath {
     }
 };
 
-/// Columns from the lamps to points in the water, and their means over the lamps.
+/// Computes the columns from the lamps to points in the water, and their means over the lamps.
 class LampPaths {
   public:
-    /// `column` computes those from one lamp to a point; `scene` must outlive this object.
+    /// `column` computes the columns from one lamp to a point; `scene` must outlive this object.
     using PointColumn =
         std::function<void(std::size_t lamp, const Point3& x, std::span<double> column)>;
     LampPaths(const LitScene& scene, PointColumn column)
         : scene_(scene), column_(std::move(column)) {}
 
-    /// Adds `weight` times the mean of the paths from each lamp to `x`, whether or not the lamp
-    /// illuminates it: the paper's mean distance.
+    /// Adds `weight` times the mean over all lamps of the path from a lamp to `x`, whether or not
+    /// the lamp illuminates it: the paper's mean distance.
     void add_mean(double weight, const Point3& x, WaterPath& path) const;
 
   private:
@@ -50,38 +51,39 @@ class LampPaths {
     PointColumn column_;
 };
 
-/// In-scatter of one slab of water along one ray.
+/// The light scattered in by one slab of water along one ray.
 struct SlabLight {
-    bool visible = false;  // whether the ray enters the slab before it ends; all else 0 if not
-    /// Due to each lamp, the mean of the light that the slab scatters towards the camera as far as
-    /// the ray goes, E_s of the paper's equation 17 [W m^-3 sr^-1].
+    bool visible = false;  // whether the ray reaches the slab; if not, all else is 0
+    /// For each lamp, the mean light that the slab scatters towards the camera, over the part
+    /// before the ray's end: E_s of the paper's equation 17 [W m^-3 sr^-1].
     std::vector<Spectrum> lamps;
-    /// int e^-tau ds over the whole slab [m], in the paper's output weighted by distance like the
-    /// radiance (SensorModel::surface_factor): the radiance at the camera per E_s.
+    /// The radiance at the camera per E_s: int e^-tau ds over the whole slab [m]. In the paper's
+    /// output, it is weighted by distance like the radiance (SensorModel::surface_factor).
     Spectrum weight;
-    /// From the lamps to the middle of what the ray sees of the slab, and from there to the glass.
+    /// The paths from the lamps to the middle of the visible part of the slab, and from there to
+    /// the glass.
     WaterPath to_lamps, to_camera;
 };
 
-/// Splits the in-scatter along camera rays into slabs of water.
+/// Integrates in-scattering along camera rays slab by slab.
 class InScatterSlabs {
   public:
     /// `faces`: camera z of the slab boundaries [m], ascending; or, if the slabs are `shells`,
-    /// their distances along the water rays, for views too wide for planes. `sensor` determines how
-    /// `integrate` weights light by distance. All references must outlive this object.
+    /// their distances along rays in the water, for views too wide for planes. `sensor` determines
+    /// how `integrate` weights light by distance. All references must outlive this object.
     InScatterSlabs(const LitScene& scene, const Integrator& integrator, const LampPaths& paths,
                    const Affine& world_from_camera, std::vector<double> faces, bool shells,
                    const SensorModel& sensor);
 
-    /// Joins slabs in pairs before camera z `end`, or that distance, but not across the ends of
-    /// `kept`.
+    /// Joins pairs of slabs that lie before `end`, a camera z or distance, but not across the ends
+    /// of `kept`.
     void join_pairs(double end, const Interval& kept);
 
     std::size_t count() const { return faces_.size() - 1; }
-    /// Camera z, or distance, of face `i` and of the centre of slab `i` [m].
+    /// The camera z, or distance, of face `i` and of the centre of slab `i` [m].
     double face(std::size_t i) const { return faces_[i]; }
     double middle(std::size_t i) const { return 0.5 * (faces_[i] + faces_[i + 1]); }
-    /// Where a point of a ray lies among the faces.
+    /// Converts distances along a ray to the coordinate of the faces.
     RayDepth depth(const Ray& ray) const {
         return shells_ ? RayDepth::from_origin() : RayDepth(camera_from_world_, ray);
     }
@@ -92,10 +94,11 @@ class InScatterSlabs {
                    std::vector<SlabLight>& slabs) const;
 
   private:
-    // Fills in what depends on the water between `begin` and `end`, but for the lamps' light.
+    // Sets the weight and the paths of the slab between `begin` and `end`, and divides the light of
+    // the lamps by the weight of the visible part.
     void fill_slab(const Ray& ray, double begin, double end, double behind, WaterPath& path,
                    SlabLight& slab) const;
-    // int e^-tau ds over `part`, which continues `path`.
+    // Returns int e^-tau ds over `part`, which continues `path`.
     Spectrum weight(const WaterPath& path, const WaterPath& part) const;
 
     LitScene scene_;
@@ -125,7 +128,7 @@ class PathImage {
     }
     const ImagePlane& length() const { return length_; }
     const ImagePlane& column(std::size_t constituent) const { return columns_[constituent]; }
-    /// Calls `change` with each plane of `from` and its own.
+    /// Calls `change` with each plane of `from` and the corresponding one of this image.
     template <class Change>
     void fill_from(const PathImage& from, const Change& change) {
         change(from.length_, length_);
@@ -137,22 +140,22 @@ class PathImage {
     std::vector<ImagePlane> columns_;
 };
 
-/// Blurs images according to their pixels' paths, one band at a time (ForwardScatter). In water
-/// that varies, a path is characterised by its blur length, int b/b_0 ds, and its optical depth:
-/// both are linear in its columns.
+/// Blurs images by the paths of their pixels, one band at a time (ForwardScatter). In water that
+/// varies, a path is characterized by its blur length, int b/b_0 ds, and its optical depth, both of
+/// which are linear in its columns.
 class PathScatter {
   public:
     PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium)
         : PathScatter(ForwardScatter(desc, plane), medium, plane.width, plane.height) {}
-    /// For light at the nodes of a grid; desc.K > 0.
+    /// The same for light at the nodes of a grid. Precondition: desc.K > 0.
     PathScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium,
                 double spacing);
 
-    /// Spreads the light of band `band` along its paths. Paths of dark pixels are not read.
-    /// `means`: as ForwardScatter::add.
+    /// Spreads the light of a band along its paths. Paths of dark pixels are not read. `means`: as
+    /// ForwardScatter::add.
     void add(std::size_t band, const ImagePlane& light, const PathImage& paths, bool means = false);
-    /// Writes the light that is added to the image by all that was spread, and resets to zero:
-    /// ForwardScatter::finish and finish_pixels.
+    /// Writes the sum of all light that was spread, and resets it to zero: ForwardScatter::finish
+    /// and finish_pixels.
     void finish(ImagePlane& added) { scatter_.finish(added.values()); }
     void finish_pixels(ImagePlane& added) { scatter_.finish_pixels(added.values()); }
 
@@ -166,52 +169,55 @@ class PathScatter {
     ImagePlane blur_length_, optical_depth_;
 };
 
-/// Throws InputError at `where` unless blur lengths are defined in `medium`: water that varies
-/// needs a uniform part that scatters.
+/// Throws InputError at `where` unless `medium` defines blur lengths: water that varies needs a
+/// uniform part that scatters.
 void check_blur_length(const Medium& medium, const SourceLocation& where);
 
-/// How far each pixel sees into the water, by camera z or whatever slabs are placed by. Where a
-/// pixel's samples end on surfaces at several depths, those in front and those behind the widest
-/// gap are each taken together.
+/// The depth to which each pixel sees into the water, in the coordinate of the slabs' faces. If the
+/// samples of a pixel end at several depths, those in front of the widest gap form one part of the
+/// pixel, and those behind it another.
 class VisibleWater {
   public:
     VisibleWater() = default;
-    VisibleWater(int width, int height) : share_(width, height) {
+    VisibleWater(int width, int height) : fractions_(width, height) {
         for (ImagePlane& depth : depths_) depth.assign(width, height);
     }
 
-    /// Stores a pixel; `depth` is that along its ray. Callable from any thread, once per pixel;
-    /// pixels that are not stored have no water.
+    /// Stores a pixel; `depth` is that along its ray. To be called once per pixel, from any thread;
+    /// pixels that are not stored see no water.
     void set(std::size_t pixel, const PixelView& view, const RayDepth& depth);
 
-    /// The fraction of a pixel whose water begins, and that sees beyond `z`.
+    /// `alpha` is the fraction of a pixel that sees any water, and `beyond` that which sees beyond
+    /// `z`.
     double alpha(std::size_t pixel) const {
-        return static_cast<double>(share_[pixel][0]) + static_cast<double>(share_[pixel][1]);
+        return static_cast<double>(fractions_[pixel][0]) +
+               static_cast<double>(fractions_[pixel][1]);
     }
     double beyond(std::size_t pixel, double z) const {
         double sum = 0;
-        for_each(pixel, [&](double share, double end) {
-            if (end > z) sum += share;
+        for_each(pixel, [&](double fraction, double end) {
+            if (end > z) sum += fraction;
         });
         return sum;
     }
-    /// Calls `body(share, end)` for the parts of a pixel.
+    /// Calls `body(fraction, end)` for each part of a pixel.
     template <class Body>
     void for_each(std::size_t pixel, const Body& body) const {
         for (std::size_t n = 0; n < 2; ++n)
-            if (share_[pixel][n] > 0)
-                body(static_cast<double>(share_[pixel][n]), static_cast<double>(depths_[n][pixel]));
+            if (fractions_[pixel][n] > 0)
+                body(static_cast<double>(fractions_[pixel][n]),
+                     static_cast<double>(depths_[n][pixel]));
     }
-    /// Where the pixel's water ends, 0 without any.
+    /// The greatest depth at which the pixel's water ends, 0 without water.
     double end(std::size_t pixel) const {
-        return static_cast<double>(depths_[share_[pixel][1] > 0 ? 1 : 0][pixel]);
+        return static_cast<double>(depths_[fractions_[pixel][1] > 0 ? 1 : 0][pixel]);
     }
-    std::size_t size() const { return share_.size(); }
-    int width() const { return share_.width(); }
-    int height() const { return share_.height(); }
+    std::size_t size() const { return fractions_.size(); }
+    int width() const { return fractions_.width(); }
+    int height() const { return fractions_.height(); }
 
-    /// The least and the greatest depth of all pixels; the least is -infinity if a pixel does not
-    /// see any water with all of its samples.
+    /// The least and the greatest depth of all pixels. The least is -infinity if any sample of a
+    /// pixel sees no water.
     struct Extent {
         double nearest = std::numeric_limits<double>::infinity();
         double farthest = 0;
@@ -219,7 +225,7 @@ class VisibleWater {
     Extent extent() const;
 
   private:
-    Grid2D<std::array<float, 2>> share_;
+    Grid2D<std::array<float, 2>> fractions_;
     std::array<ImagePlane, 2> depths_;  // near, far
 };
 

@@ -17,8 +17,8 @@ namespace uw {
 
 namespace {
 
-/// The ratios of offset + s between neighbouring widths s [pixels] at which interpolation between
-/// two, three, or four of them misplaces less than 0.25 % of the light.
+/// The maximum ratios of offset + s between neighbouring widths s [pixels] for which interpolation
+/// between two, three or four of them misplaces less than 0.25 % of the light.
 struct LadderRule {
     std::array<double, 3> ratios;
     double offset;
@@ -50,7 +50,7 @@ WidthLadder::WidthLadder(ForwardScatterDesc::Shape shape, double least, double g
     widths_.push_back(greatest);
 }
 
-double WidthLadder::place(double width) const {
+double WidthLadder::position(double width) const {
     if (widths_.size() == 1) return 0;
     const double last = static_cast<double>(widths_.size()) - 1;
     return std::clamp((std::log(width + offset_) - begin_) / per_step_, 0.0, last);
@@ -58,12 +58,13 @@ double WidthLadder::place(double width) const {
 
 namespace {
 
-/// Width s in pixels of the kernel for a blur length of 1 m along an axis of focal length `focal`.
+/// Returns the width s in pixels of the kernel for a blur length of 1 m along an axis of focal
+/// length `focal`.
 double width_along(double blur, double focal) {
     return focal * blur / (2 * std::numbers::pi);
 }
 
-// Spacings of grids, in powers of two.
+// Number of grids, whose spacings are powers of two.
 constexpr std::size_t k_levels = 10;
 
 }  // namespace
@@ -84,7 +85,7 @@ void check_forward_scatter(const ForwardScatterDesc& desc, std::span<const doubl
                             where, desc.G, c));
 }
 
-/// Each pixel's blur length and the factor on its spread light.
+/// The blur length of each pixel, and the factor on the light that it spreads.
 class ForwardScatter::Paths {
   public:
     Paths(const ForwardScatterDesc& desc, const ScatterSource& source)
@@ -106,7 +107,7 @@ class ForwardScatter::Paths {
         return depths_ != nullptr ? static_cast<double>(depths_[pixel])
                                   : attenuation_ * length(pixel);
     }
-    /// K [e^{-(G/c) tau} - e^{-tau}], without cancellation for small tau.
+    /// Returns K [e^{-(G/c) tau} - e^{-tau}], without cancellation for small tau.
     double factor(std::size_t pixel) const {
         const double tau = depth(pixel);
         return strength_ * std::exp(-fraction_of_depth_ * tau) *
@@ -128,7 +129,7 @@ ForwardScatter::ForwardScatter(const ForwardScatterDesc& desc, const ScatterPlan
     if (desc.K == 0) return;
     levels_.resize(k_levels);
     given_.assign(plane.width, plane.height);
-    place_.assign(plane.width, plane.height);
+    position_.assign(plane.width, plane.height);
 }
 
 ForwardScatter::ForwardScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane,
@@ -136,7 +137,7 @@ ForwardScatter::ForwardScatter(const ForwardScatterDesc& desc, const ScatterPlan
     : desc_(desc), plane_(plane), at_nodes_(true) {
     levels_.emplace_back(std::in_place, plane.width, plane.height, spacing);
     given_.assign(grid().columns(), grid().rows());
-    place_.assign(grid().columns(), grid().rows());
+    position_.assign(grid().columns(), grid().rows());
 }
 
 double ForwardScatter::nodes_per_width(ForwardScatterDesc::Shape shape) {
@@ -147,8 +148,8 @@ double ForwardScatter::width_per_metre(const ForwardScatterDesc& desc, const Sca
     return width_along(desc.B, std::min(plane.focal_x, plane.focal_y));
 }
 
-/// Beyond this width [pixels], all kernels spread light evenly.
-double ForwardScatter::widest() const {
+/// Returns the width [pixels] beyond which kernels spread light evenly over the image.
+double ForwardScatter::max_width() const {
     const double sides = desc_.shape == ForwardScatterDesc::Shape::exponential ? 6 : 1.5;
     return sides * std::max(plane_.width, plane_.height);
 }
@@ -168,7 +169,7 @@ void ForwardScatter::add(std::span<const float> light, double range, double atte
     spread(light, Paths(desc_, range, attenuation), false);
 }
 
-WidthLadder ForwardScatter::place_light(std::span<const float> light, const Paths& paths) {
+WidthLadder ForwardScatter::prepare_light(std::span<const float> light, const Paths& paths) {
     if (light.size() != given_.size())
         throw std::invalid_argument("forward scatter: the light is not of the plane's size");
     struct Extent {
@@ -176,7 +177,7 @@ WidthLadder ForwardScatter::place_light(std::span<const float> light, const Path
         double greatest = -std::numeric_limits<double>::infinity();
     };
     const auto columns = static_cast<std::size_t>(given_.width());
-    const double per_metre = width_per_metre(desc_, plane_), most = widest();
+    const double per_metre = width_per_metre(desc_, plane_), max = max_width();
     const auto each_row = [&](const auto& body) {
         parallel_for(static_cast<std::size_t>(given_.height()), [&](std::size_t y) {
             for (std::size_t i = y * columns; i < (y + 1) * columns; ++i) body(y, i);
@@ -190,7 +191,7 @@ WidthLadder ForwardScatter::place_light(std::span<const float> light, const Path
         if (!(light[i] > 0 && std::isfinite(light[i]) && length >= 0 && depth >= 0 &&
               std::isfinite(length) && std::isfinite(depth)))
             throw std::invalid_argument("forward scatter: light or path is not a number >= 0");
-        const double width = std::min(per_metre * length, most);
+        const double width = std::min(per_metre * length, max);
         given_[i] = static_cast<float>(paths.factor(i) * static_cast<double>(light[i]));
         rows[y].least = std::min(rows[y].least, width);
         rows[y].greatest = std::max(rows[y].greatest, width);
@@ -204,25 +205,25 @@ WidthLadder ForwardScatter::place_light(std::span<const float> light, const Path
     WidthLadder ladder(desc_.shape, all.least, all.greatest);
     each_row([&](std::size_t, std::size_t i) {
         if (given_[i] != 0)
-            place_[i] =
-                static_cast<float>(ladder.place(std::min(per_metre * paths.length(i), most)));
+            position_[i] =
+                static_cast<float>(ladder.position(std::min(per_metre * paths.length(i), max)));
     });
     return ladder;
 }
 
 void ForwardScatter::spread(std::span<const float> light, const Paths& paths, bool means) {
-    const WidthLadder ladder = place_light(light, paths);
+    const WidthLadder ladder = prepare_light(light, paths);
     const double per_metre = width_per_metre(desc_, plane_);
     const double x = width_along(desc_.B, plane_.focal_x), y = width_along(desc_.B, plane_.focal_y);
     for (int step = 0; step < static_cast<int>(ladder.widths().size()); ++step) {
         const double width = ladder.widths()[static_cast<std::size_t>(step)];
         const auto part = [&](int row, std::span<double> values) {
             const std::span<const float> given = std::as_const(given_).row(row);
-            const std::span<const float> place = std::as_const(place_).row(row);
+            const std::span<const float> position = std::as_const(position_).row(row);
             bool any = false;
             for (std::size_t i = 0; i < given.size(); ++i) {
                 if (given[i] == 0) continue;
-                const double weight = ladder.weight(step, static_cast<double>(place[i]));
+                const double weight = ladder.weight(step, static_cast<double>(position[i]));
                 if (weight == 0) continue;
                 values[i] = weight * static_cast<double>(given[i]);
                 any = true;
@@ -240,7 +241,7 @@ void ForwardScatter::spread(std::span<const float> light, const Paths& paths, bo
     }
 }
 
-/// The grid for a kernel of this width.
+/// Returns the grid for a kernel of this width, which is made if there is none yet.
 MirroredBlur& ForwardScatter::level_for(double width) {
     if (at_nodes_) return *levels_.front();
     const double spacing = nodes_per_width(desc_.shape) * width;
@@ -252,7 +253,7 @@ MirroredBlur& ForwardScatter::level_for(double width) {
 
 namespace {
 
-// Adds rows to an image of `columns` columns.
+// Returns a sink that adds rows to an image of `columns` columns.
 RowSink adder(std::span<float> image, int columns) {
     return [=](int y, std::span<const double> row) {
         float* out = image.data() + static_cast<std::ptrdiff_t>(y) * columns;
@@ -280,7 +281,7 @@ void ForwardScatter::finish_pixels(std::span<float> added) {
     std::fill(added.begin(), added.end(), 0.0F);
     for (std::optional<MirroredBlur>& level : levels_)
         if (level && level->any()) level->finish(adder(added, plane_.width));
-    // Light is never negative; negative values are errors of the transforms and the ladder.
+    // Light is never negative: such values are errors of the transforms and of the ladder.
     for (float& value : added) value = std::max(value, 0.0F);
 }
 

@@ -25,22 +25,22 @@ namespace {
 // Memory limit for the slabs processed at once [bytes].
 constexpr double k_slab_bytes = 256e6;
 
-// Slabs of water that begin at a distance s are k_growth (s + offset) thick, with the smaller of
-// two offsets. Where a surface cuts a slab, the light of the part before it is spread over the
-// whole slab in the pixels beside it: a halo around depth edges, of first order in the thickness.
-// It is up to 0.25 % of the backscatter in what `uwvdb validate` renders, no more than the error of
-// mixing blur widths.
+// A slab of water that begins at a distance s is k_growth (s + offset) thick, with the smaller of
+// the two offsets. Where a surface cuts a slab, neighbouring pixels spread the light of the part in
+// front of it over the whole slab. The resulting halo around depth edges is of first order in the
+// thickness. In the images of `uwvdb validate`, it is up to 0.25 % of the backscatter, no more than
+// the error of interpolating blur widths.
 constexpr double k_growth = 0.06;
 constexpr double k_offset = 0.3;        // m
 constexpr double k_offset_depth = 0.6;  // optical depth
-// The angle between the rays along which slabs are integrated. Their light is blurred before it is
-// seen, by kernels wider than a tenth of that.
+// The angle between the rays along which slabs are integrated. Their light is then blurred by
+// kernels wider than a tenth of that angle.
 constexpr double k_slab_spacing = 0.0091;  // rad
 
-// Light in a form that can be blurred: finite and non-negative.
+// Makes a value finite and non-negative, so that it can be blurred.
 float as_light(double value) {
-    constexpr double k_most = 1e30;
-    return value > 0 ? static_cast<float>(std::min(value, k_most)) : 0.0F;
+    constexpr double k_max = 1e30;
+    return value > 0 ? static_cast<float>(std::min(value, k_max)) : 0.0F;
 }
 
 std::vector<double> growing_slabs(double near, double far, double attenuation) {
@@ -62,7 +62,7 @@ std::vector<double> slab_faces(const Rendering& rendering) {
         for (int i = 0; i <= slabs.count; ++i) faces.push_back(slabs.boundary(i));
         return faces;
     }
-    // All of the water, wherever the slabs of `backscatter_first` are.
+    // The slabs cover all of the water, wherever those of `backscatter_first` are.
     const LitScene& scene = rendering.pixels.scene();
     const Slabs water = place_slabs(PlanesDesc(), rendering.pixels.rays(), scene);
     const Medium& medium = *scene.medium;
@@ -105,11 +105,11 @@ void check_memory(const ScatterPlane& plane, std::size_t values_per_pixel) {
 
 }  // namespace
 
-/// What forward scatter keeps of an image, and what becomes of it.
+/// Stores the pixels of an image, scatters their light, and adds it to the image.
 class ForwardScattering {
   public:
-    /// What `rendering` refers to must outlive this. Throws InputError if there is not enough
-    /// memory.
+    /// What `rendering` refers to must outlive this object. Throws InputError if there is not
+    /// enough memory.
     explicit ForwardScattering(const Rendering& rendering);
 
     /// Stores what the second pass needs of a pixel. Thread safe.
@@ -118,15 +118,15 @@ class ForwardScattering {
     /// Scatters everything stored. Throws Interrupted.
     void run(const ProgressCallback& progress);
 
-    /// Adds the result to a film that holds the first pass and whose window is the whole image.
+    /// Adds the result to a film that contains the first pass, and whose window is the whole image.
     void write(const LayerPlan& plan, const BandColour& colour, Film& film) const;
 
   private:
-    /// The light of a lamp whose layer is requested; the first has that of all others.
+    /// The light of a lamp whose layer is requested; the first group has that of all other lamps.
     struct Group {
         std::vector<std::size_t> lamps;
         std::vector<ImagePlane> direct;   // per band
-        std::vector<ImagePlane> forward;  // per band; irradiance until (14) has been done
+        std::vector<ImagePlane> forward;  // per band; irradiance before (14)
     };
     struct SurfaceSums;
 
@@ -134,7 +134,7 @@ class ForwardScattering {
     void add_surface(const RenderedPixel& pixel, std::size_t sample, SurfaceSums& sums) const;
     void scatter_surfaces();
     void scatter_water(const std::function<void(std::size_t slab)>& done);
-    // The factors on the light of pixel `i` before and after its blur on the way to the camera.
+    // The factors on the light of pixel `i` before and after the blur on its path to the camera.
     double factor_before(std::size_t i) const {
         return sensor_.factors_before_blur() ? pixel_factor_[i] : 1.0;
     }
@@ -150,22 +150,22 @@ class ForwardScattering {
     ForwardScatterDesc desc_;
     SensorModel sensor_;  // the renderer's
     ScatterPlane plane_;
-    /// Camera z range of `backscatter_first`, or distances along water rays; both ends are among
-    /// the faces of the slabs.
+    /// The range of `backscatter_first` in camera z, or in distance along rays; both ends are faces
+    /// of slabs.
     Interval first_slab_;
-    double spacing_ = 1;  // pixels between the nodes at which in-scatter is integrated, >= 1
+    double spacing_ = 1;  // of the nodes at which in-scattering is integrated [pixels], >= 1
     LampPaths lamp_paths_;
     InScatterSlabs in_scatter_;
     std::size_t bands_;
     std::vector<Group> groups_;
     std::vector<std::size_t> group_of_lamp_;
     bool several_;                         // whether there is more than one group
-    std::vector<ImagePlane> direct_;       // per band, if it is not that of the only group
-    std::vector<ImagePlane> backscatter_;  // per band, without what is added
-    std::vector<ImagePlane> snow_;         // per band, if there is snow; not blurred
-    std::vector<ImagePlane> added_;        // per group and band, to the backscatter
-    std::vector<ImagePlane> first_;        // of it, in backscatter_first; empty if not requested
-    std::vector<ImagePlane> response_;     // per band: direct light per irradiance [1/sr]
+    std::vector<ImagePlane> direct_;       // per band, unless it is that of the only group
+    std::vector<ImagePlane> backscatter_;  // per band, from the first pass
+    std::vector<ImagePlane> snow_;         // per band, if there is snow; it is not blurred
+    std::vector<ImagePlane> added_;        // per group and band, added to the backscatter
+    std::vector<ImagePlane> first_;        // the part in backscatter_first; empty if not requested
+    std::vector<ImagePlane> response_;     // per band: radiance at the camera per irradiance [1/sr]
     Grid2D<float> pixel_factor_;
     PathImage from_lamps_, to_camera_;  // of the surfaces
     VisibleWater water_;
@@ -279,7 +279,7 @@ void ForwardScattering::keep_surfaces(std::size_t i, const RenderedPixel& pixel)
             groups_[g].forward[b][i] = as_light(sums.irradiance[g][b]);
             groups_[g].direct[b][i] = as_light(sums.direct[g][b] * factor);
         }
-        // What lamps in view scatter forwards is part of the water's light already.
+        // The forward-scattered light of lamps in view is part of the in-scattered light already.
         if (!several_)
             groups_[0].direct[b][i] =
                 as_light((pixel.result.direct[b] - pixel.result.lamps_in_view[b]) * factor);
@@ -306,12 +306,13 @@ void ForwardScattering::add_surface(const RenderedPixel& pixel, std::size_t samp
     sums.to_camera.add(1, hit.distance, column);
     lamp_paths_.add_mean(1, hit.position, sums.from_lamps);
     const double weight = 1.0 / renderer_.samples();
-    const double seen = sensor_.surface_factor(hit.distance);
+    const double factor = sensor_.surface_factor(hit.distance);
     const std::span<const double> to_camera = light.to_camera(at);
-    // Light scattered on its way has no single direction: it is reflected by the diffuse part.
+    // Light that was scattered on its path has no single direction, so only the diffuse part of the
+    // BRDF reflects it.
     for (std::size_t b = 0; b < bands_; ++b)
         sums.response[b] +=
-            weight * hit.reflectance[b] * std::numbers::inv_pi * seen * to_camera[b];
+            weight * hit.reflectance[b] * std::numbers::inv_pi * factor * to_camera[b];
     const auto add_irradiance = [&](std::size_t g, std::size_t j, Spectrum& irradiance) {
         for (std::size_t b = 0; b < bands_; ++b) {
             irradiance[b] = weight * light.irradiance(at, j, b);
@@ -327,19 +328,20 @@ void ForwardScattering::add_surface(const RenderedPixel& pixel, std::size_t samp
     const SurfaceReflection reflection(*scene_.surfaces, surface, static_cast<int>(bands_));
     if (reflection.emits())
         for (std::size_t b = 0; b < bands_; ++b)
-            sums.direct[0][b] += weight * reflection.emission()[b] * seen * to_camera[b];
+            sums.direct[0][b] += weight * reflection.emission()[b] * factor * to_camera[b];
     for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(at, j)) continue;
         const std::size_t g = group_of_lamp_[light.emitters()[j].index()];
         add_irradiance(g, j, irradiance);
         brdf_for(light.emitters()[j], reflection, surface, brdf);
         for (std::size_t b = 0; b < bands_; ++b)
-            sums.direct[g][b] += irradiance[b] * brdf[b] * seen * to_camera[b];
+            sums.direct[g][b] += irradiance[b] * brdf[b] * factor * to_camera[b];
     }
 }
 
 void ForwardScattering::run(const ProgressCallback& progress) {
-    // Before all surfaces the error of a slab is of second order in its thickness.
+    // In front of all surfaces, the error of a slab is of second order in its thickness, so it may
+    // be twice as thick.
     if (spacing_ > 1) in_scatter_.join_pairs(water_.extent().nearest, first_slab_);
     const auto steps = static_cast<double>(in_scatter_.count()) + 1;
     const auto report = [&](std::size_t done) {
@@ -380,11 +382,11 @@ void ForwardScattering::scatter_water(const std::function<void(std::size_t slab)
     const double slab_bytes =
         4.0 * lattice.columns() * lattice.rows() *
         static_cast<double>((groups_.size() + 1) * bands_ + 2 + 2 * constituents);
-    const auto together = static_cast<std::size_t>(
+    const auto slabs_at_once = static_cast<std::size_t>(
         std::clamp(k_slab_bytes / slab_bytes, 1.0, static_cast<double>(in_scatter_.count())));
     std::vector<SlabImages> slabs;
-    for (std::size_t first = 0; first < in_scatter_.count(); first += together) {
-        const std::size_t count = std::min(together, in_scatter_.count() - first);
+    for (std::size_t first = 0; first < in_scatter_.count(); first += slabs_at_once) {
+        const std::size_t count = std::min(slabs_at_once, in_scatter_.count() - first);
         slabs.assign(count, lattice.images());
         lattice.integrate(first, slabs);
         for (std::size_t i = 0; i < count; ++i) {

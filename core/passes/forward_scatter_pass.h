@@ -8,12 +8,13 @@
 
 namespace uw {
 
-/// The image as forward scatter blurs it: with the pixels per radian in the water at the centre of
-/// the image; if the centre does not see through the port, at the closest position that does.
+/// Returns the image plane that forward scatter blurs, with the pixels per radian in the water at
+/// the image's centre or, if the centre does not see through the port, at the closest position that
+/// does.
 ScatterPlane scatter_plane(const RaySource& rays);
 
-/// Forward scatter of a rendered image in the paper's four places (physics section 6), a second
-/// pass over the pixels:
+/// Adds forward scatter to a rendered image, a second pass over its pixels, in four places as in
+/// the paper (physics section 6):
 ///
 ///     (14)  E     = E' + E' * g(R_lamps)      light falling on surfaces
 ///     (16)  L_s   = L_d + L_d * g(R_c)        the signal, with (14) in it
@@ -21,14 +22,15 @@ ScatterPlane scatter_plane(const RaySource& rays);
 ///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each slab's light on its way to the camera,
 ///                                             with (17) in it
 ///
-/// The light added by (14) and (16) is the layer `forward`; that added by (17) and (18) belongs to
-/// `backscatter`. The blur acts on radiance in water, and the factor (PixelResult::pixel_factor) of
-/// the pixel where it lands is applied afterwards; in the paper's output, (16) and (18) blur light
-/// that carries the factor of the pixel it comes from. Slabs are processed a few at a time, so
-/// memory does not grow with their number. The result does not depend on the number of threads.
+/// The layer `forward` contains the light added by (14) and (16); that added by (17) and (18)
+/// belongs to `backscatter`. The blur acts on radiance in water, and the factor
+/// (PixelResult::pixel_factor) of the pixel where the light arrives is applied afterwards. In the
+/// paper's output, however, (16) and (18) blur light to which the factor of its own pixel has been
+/// applied. Slabs are processed a few at a time, so that memory does not grow with their number.
+/// The result does not depend on the number of threads.
 ///
-/// Its step keeps what it needs of the pixels. The water is split into the integrator's slabs if it
-/// sums slabs, else into slabs that grow with the distance.
+/// The pass's step stores what it needs of each pixel. The water is split into the integrator's
+/// slabs, if it sums slabs, and otherwise into slabs whose thickness grows with the distance.
 class ForwardScatterPass final : public Pass {
   public:
     ForwardScatterPass();
@@ -40,7 +42,7 @@ class ForwardScatterPass final : public Pass {
     void run(Rendering& rendering) override;
 
   private:
-    std::unique_ptr<class ForwardScattering> scattering_;  // of what is rendered, from begin on
+    std::unique_ptr<class ForwardScattering> scattering_;  // of the current image, from begin on
 };
 
 }  // namespace uw
