@@ -361,7 +361,7 @@ void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
     result.splats.push_back(
         {.distance = distance,
          .id = particle.id,
-         .hidden = static_cast<float>(scene.veil.share_beyond(at.x, at.y, distance, end)),
+         .hidden = static_cast<float>(scene.veil.fraction_beyond(at.x, at.y, distance, end)),
          .radiance = first,
          .footprint = footprint});
 }

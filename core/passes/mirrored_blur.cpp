@@ -27,15 +27,16 @@ constexpr double k_pi = std::numbers::pi;
 constexpr double k_negligible = 1e-15;
 const double k_max_exponent = -std::log(k_negligible);
 
-// Beyond this sigma a Gaussian's spectrum at half a cycle per pixel is below 3e-9: no aliases.
+// Beyond this sigma, the spectrum of a Gaussian at half a cycle per pixel is below 3e-9, so that
+// there are no aliases.
 constexpr double k_alias_free_sigma = 2;
-// Nor does an exponential have any that matter where its spectrum is below e^-18, 1.5e-8.
+// The aliases of an exponential are negligible where its spectrum is below e^-18, 1.5e-8.
 constexpr double k_alias_free_exponent = 18;
-// In the mixture of Gaussians that makes up the exponential (below), a fraction of 2e-9 is narrower
+// In the mixture of Gaussians that equals the exponential (below), a fraction of 2e-9 is narrower
 // than s / 6.
 constexpr double k_max_deviate = 6;
 
-// The table of aliases: nodes over 0 to half a cycle per pixel, and one beyond either end.
+// The table of aliases has nodes from 0 to half a cycle per pixel, and one beyond each end.
 constexpr int k_steps = 64;
 constexpr int k_nodes = k_steps + 3;
 constexpr double k_step = 0.5 / k_steps;
@@ -44,7 +45,7 @@ double sinc(double f) {
     return f == 0 ? 1.0 : std::sin(k_pi * f) / (k_pi * f);
 }
 
-// Spectrum of a Gaussian averaged over a pixel, before sampling at the pixel centres.
+// Returns the spectrum of a Gaussian averaged over a pixel, before sampling at pixel centres.
 double smooth_gaussian(double sigma, double f) {
     const double x = k_pi * sigma * f;
     return std::exp(-2 * x * x) * sinc(f);
@@ -79,10 +80,10 @@ class PixelGaussian {
 
   private:
     double sigma_;
-    std::vector<double> weights_;  // of the pixel itself, and of both neighbours i pixels away
+    std::vector<double> weights_;  // [i]: of each of the two pixels at a distance of i
 };
 
-// Weights of cubic interpolation at `t` in [0, 1] between the middle two of four nodes.
+// Returns the weights of cubic interpolation at `t` in [0, 1] between the middle two of four nodes.
 std::array<double, 4> cubic_weights(double t) {
     return {-t * (t - 1) * (t - 2) / 6, (t + 1) * (t - 1) * (t - 2) / 2, -(t + 1) * t * (t - 2) / 2,
             (t + 1) * t * (t - 1) / 6};
@@ -252,7 +253,7 @@ void CosineTransform::inverse(double* line) const {
 namespace {
 
 constexpr int k_rows = 16;    // of a parallel block
-constexpr int k_columns = 8;  // of a parallel block: a cache line of each row
+constexpr int k_columns = 8;  // of a parallel block: one cache line of each row
 
 // Runs `body(begin, end)` over blocks of [0, count).
 void parallel_blocks(int count, int block, const std::function<void(int, int)>& body) {
@@ -320,10 +321,10 @@ void MirroredBlur::add_nodes(const RowSource& nodes, bool means, const BlurKerne
 void MirroredBlur::add_columns(const BlurKernel& kernel, Input input) {
     const bool spread = input == Input::pixels && !grid_.y().is_identity();
     const int given = input == Input::pixels ? grid_.height() : grid_.rows();
-    // What the input was multiplied by on its way to the nodes, and what the interpolation from
-    // them is going to multiply the sum by.
+    // Divide by the response of the spline: that of spreading the input to the nodes, if it was
+    // spread, and that of interpolating the sum from them.
     const bool twice = input != Input::node_values;
-    const auto undone = [&](double response) {
+    const auto inverse_response = [&](double response) {
         return 1 / (twice ? response * response : response);
     };
     const double unit = input == Input::pixels ? 1
@@ -349,9 +350,9 @@ void MirroredBlur::add_columns(const BlurKernel& kernel, Input input) {
             const std::span<double> column = nodes.row(x - begin), sum = spectrum_.row(x);
             along_columns_.forward(column.data());
             const int filled = kernel.fill_column(x, factors);
-            const double across = unit * undone(response_x_[static_cast<std::size_t>(x)]);
+            const double across = unit * inverse_response(response_x_[static_cast<std::size_t>(x)]);
             for (std::size_t y = 0; y < static_cast<std::size_t>(filled); ++y)
-                sum[y] += across * undone(response_y_[y]) * factors[y] * column[y];
+                sum[y] += across * inverse_response(response_y_[y]) * factors[y] * column[y];
         }
     });
     any_ = true;

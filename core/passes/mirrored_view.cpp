@@ -50,7 +50,7 @@ bool MirroredView::add_arriving(double x, double y, Spectrum& sum) const {
     return true;
 }
 
-// The centre tells for all of the pixel, but on waves, and where something else hides the surface
+// The pixel's centre stands for all of it, unless the surface has waves or something hides it
 // there.
 Spectrum MirroredView::arriving(int x, int y) const {
     const bool has_waves = scene_.water_surface->has_waves();

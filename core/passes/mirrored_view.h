@@ -9,20 +9,21 @@
 
 namespace uw {
 
-/// What a camera sees in the water's surface: the rays of those of its rays that meet the surface,
-/// from there on. The rest have none. The image that they make is an image like any other, dimmed
-/// by the way that the light has come from the surface (MirroredView::arriving).
+/// The view of a camera by reflection in the water's surface: rays that meet the surface go on from
+/// there in the reflected direction; all others are none. These rays form an image like any other,
+/// whose light is then multiplied by the reflectance and by the transmittance of the path from the
+/// surface to the camera (MirroredView::arriving).
 class MirroredView final : public RaySource {
   public:
     /// References must outlive this object. Precondition: the scene has a water surface.
     MirroredView(const RaySource& rays, const LitScene& scene);
 
-    /// Whether any of the camera's rays may meet the surface: those of a lattice over its image
-    /// tell whether one rises.
+    /// Whether any of the camera's rays may meet the surface. A lattice of rays over the image is
+    /// tested.
     static bool may_see(const RaySource& rays, const WaterSurface& surface);
 
-    /// The share of light, by band, that is reflected and arrives at the camera, in pixel (x, y);
-    /// 0 if none of its rays meets the surface.
+    /// Returns the fraction of light, by band, that the surface reflects and that arrives at the
+    /// camera, in pixel (x, y); 0 if none of its rays meets the surface.
     Spectrum arriving(int x, int y) const;
 
     int width() const override { return rays_.width(); }
@@ -44,9 +45,10 @@ class MirroredView final : public RaySource {
     Affine world_from_camera_at(double y) const override { return rays_.world_from_camera_at(y); }
 
   private:
-    // None if something else is nearer.
+    // Returns where the ray meets the surface; none if it hits something else first.
     std::optional<WaterSurface::Meeting> meeting(const Ray& ray) const;
-    // Adds the share at image position (x, y); false if the surface is not seen there.
+    // Adds that fraction at image position (x, y); returns false if the surface is not visible
+    // there.
     bool add_arriving(double x, double y, Spectrum& sum) const;
     std::optional<Ray> mirrored(const std::optional<Ray>& ray) const;
 

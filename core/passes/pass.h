@@ -20,34 +20,33 @@
 
 namespace uw {
 
-/// What an image of light paths has reached.
+/// The accuracy that a path-traced image has reached.
 struct PathAccuracy {
     int samples = 0;  // paths per pixel
-    /// The standard error of the image: the RMS over pixels and bands of that of the total, over
-    /// the total's mean. None for a single path.
+    /// The standard error of the image: the RMS over pixels and bands of the error of the total,
+    /// divided by the mean of the total. None for a single path.
     std::optional<double> error{};
 };
 
-/// What the passes of an image have reached.
+/// The results of the passes of an image that are not pixels.
 struct ImageProgress {
-    /// What an image of light paths has reached so far; it changes only between two calls of the
-    /// progress callback.
+    /// The accuracy of a path-traced image so far. It changes only between calls of the progress
+    /// callback.
     PathAccuracy paths;
-    /// The stated standard error of light scattered more than once, where MultipleScatteringPass
-    /// renders it, relative to the image's mean, and that of each band, relative to the band's
-    /// mean.
+    /// The estimated standard error of the light of MultipleScatteringPass, if that pass is run: of
+    /// the image, relative to its mean, and of each band, relative to the band's mean.
     std::optional<double> multiple_error;
     std::vector<double> multiple_error_of_bands;
     std::uint64_t snow_particles = 0;  // drawn
 
-    /// Takes in another image of the same scene, in other bands: the greatest of each.
+    /// Includes another image of the same scene, in other bands: keeps the maximum of each value.
     void include(const ImageProgress& other) {
         paths.samples = std::max(paths.samples, other.paths.samples);
         paths.error = std::max(paths.error, other.paths.error);
         include_multiple_error(other);
         snow_particles = std::max(snow_particles, other.snow_particles);
     }
-    /// Takes in the greater of each stated error.
+    /// Includes the errors of another image: keeps the maximum of each.
     void include_multiple_error(const ImageProgress& other) {
         multiple_error = std::max(multiple_error, other.multiple_error);
         multiple_error_of_bands.resize(
@@ -58,7 +57,7 @@ struct ImageProgress {
     }
 };
 
-/// A pixel and what it was made of.
+/// A rendered pixel and its samples.
 struct RenderedPixel {
     int x, y;
     const PixelView& view;
@@ -67,56 +66,56 @@ struct RenderedPixel {
     PixelResult& result;
 };
 
-/// What a pass does to each pixel, or keeps of it, while PixelPass renders it. Thread safe.
+/// What a pass does with each pixel when PixelPass renders it: changes or stores it. Thread safe.
 using PixelStep = std::function<void(const RenderedPixel& pixel)>;
 
 struct SnowModel;
 
-/// One image in the making, or that of a part of an exposure: what its passes work on.
+/// The image, or the part of an exposure, that is being rendered: what its passes work on.
 struct Rendering {
-    const SceneDesc& desc;        // what it shows
-    double time = 0;              // the moment of that [s]; 0 where nothing moves
-    const PixelRenderer& pixels;  // of the scene's rays, its water and surfaces, and their light
-    /// The light of every emitter, splatted; empty if it was not needed.
+    const SceneDesc& desc;        // the scene of the image
+    double time = 0;              // the time of that scene [s]; 0 if nothing moves
+    const PixelRenderer& pixels;  // with the scene's rays, water, surfaces and light
+    /// The deep shadow map of every emitter; empty if not needed.
     std::span<const std::shared_ptr<const DeepShadow>> light;
-    const SnowModel* snow;  // null: there is none
+    const SnowModel* snow;  // null without snow
     const LayerPlan& plan;
     const BandColour& colour;
     Film& film;  // its window is what is rendered
     const StageProgressCallback& progress;
     ImageProgress& reached;
-    /// The rows whose ground truth TruthPass finds; empty: all of them.
+    /// Selects the rows for which TruthPass finds ground truth; empty: all rows.
     std::function<bool(int row)> has_truth{};
-    /// In the order in which they are done to a pixel, before it is stored.
+    /// In the order in which they are applied to a pixel, before it is stored.
     std::vector<PixelStep> steps{};
 
-    /// What tells `progress` how far this stage is.
+    /// Returns a callback that reports the progress of this stage to `progress`.
     ProgressCallback progress_of(const std::string& stage) const {
         return [this, stage](double fraction) { progress(stage, fraction); };
     }
 };
 
-/// What has to be there before a pass is run.
+/// What a pass needs before it is run.
 struct PassNeeds {
-    bool light = false;        // the lamps' light, splatted
+    bool light = false;        // the deep shadow maps of the lamps
     bool slabs = false;        // the scene's slabs, placed
     bool paths = false;        // LightTransport::paths
-    bool whole_image = false;  // whatever the window wanted: light comes from outside it
+    bool whole_image = false;  // whatever the window, as light comes from outside it
 };
 
-/// A step on the way from a scene to the finished image, which is a list of them (PassList). It
-/// knows of the scene what the list was made from; what it makes for an image it may hold until
-/// the next one begins.
+/// A step in rendering an image, which runs a list of them (PassList). A pass knows the scene from
+/// which the list was made. It may keep what it computes for an image until the next image begins.
 class Pass {
   public:
-    /// What a pass is run on where something moves while the shutter is open.
+    /// What a pass is run on if something moves while the shutter is open.
     enum class Of {
-        light,  ///< every part of the exposure, whose light is averaged
-        truth,  ///< the exposure's middle; not at all where nothing moves: pixels hold it already
+        light,  ///< every part of the exposure, whose images are averaged
+        truth,  ///< the exposure's middle; not run if nothing moves, since the pixels contain it
+                ///< already
         image,  ///< the whole image, after everything else
     };
 
-    /// `stage`: under which its progress is told; empty: it takes no time.
+    /// `stage` is the name under which progress is reported; empty for a pass that takes no time.
     explicit Pass(std::string stage, Of of = Of::light) : stage_(std::move(stage)), of_(of) {}
     virtual ~Pass() = default;
     Pass(const Pass&) = delete;
@@ -125,18 +124,18 @@ class Pass {
     const std::string& stage() const { return stage_; }
     Of of() const { return of_; }
 
-    /// What has to be there for an image with these layers.
+    /// What the pass needs for an image with these layers.
     virtual PassNeeds needs(const LayerPlan& plan) const;
-    /// Adds the layers that it provides, apart from those that every image has.
+    /// Adds the layers that the pass provides, apart from those that every image has.
     virtual void provide(LayerSupply& supply) const;
-    /// Reads the files that it needs for these layers, before anything else is loaded.
+    /// Reads the files that the pass needs for these layers, before anything else is loaded.
     virtual void prepare(const SceneDesc& scene, const LayerPlan& plan);
-    /// Adds its step to the rendering, if it takes part in each pixel. All passes begin before the
-    /// first is run.
+    /// Adds the pass's step to the rendering, if it has one. All passes begin before the first one
+    /// is run.
     virtual void begin(Rendering& rendering);
-    /// Does its work. Throws Interrupted, and as require_memory.
+    /// Runs the pass. Throws Interrupted, and as require_memory.
     virtual void run(Rendering& rendering) = 0;
-    /// Sums up what its step has seen of the pixels, after the last pass was run.
+    /// Completes what the pass's step has collected, after the last pass was run.
     virtual void end(Rendering& rendering);
 
   private:
@@ -152,13 +151,14 @@ class PassList {
         passes_.push_back(std::make_unique<AnyPass>(std::forward<Arguments>(arguments)...));
     }
 
-    /// What all of them provide.
+    /// The layers that all passes provide.
     LayerSupply supply() const;
-    /// What any of them needs.
+    /// What any of the passes needs.
     PassNeeds needs(const LayerPlan& plan) const;
-    /// Prepares all of them.
+    /// Prepares all passes.
     void prepare(const SceneDesc& scene, const LayerPlan& plan);
-    /// Begins and runs those of this kind. Each stage is told with 0 before it begins.
+    /// Begins, runs and ends the passes of this kind. Progress 0 is reported for each stage before
+    /// it begins.
     void run(Pass::Of of, Rendering& rendering);
 
   private:

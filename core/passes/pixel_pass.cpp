@@ -16,40 +16,41 @@ namespace uw {
 
 namespace {
 
-// How far in-scatter that is interpolated between pixels may be from that of their own rays
-// (InScatterLattice), relative, where the lattice is confirmed; the image is interpolated from
-// closer nodes and has a quarter of that error.
+// The maximum relative error of interpolated in-scattered light (InScatterLattice) at the nodes
+// that confirm the lattice. Pixels are interpolated from closer nodes and have a quarter of that
+// error.
 constexpr double k_in_scatter_tolerance = 4e-3;
 constexpr double k_draft_tolerance = 0.05;
 
-/// Renders tile by tile: the surfaces that the pixels' rays hit, the in-scatter on the way, and the
-/// final pixels.
+/// Renders the pixels of one tile at a time.
 class TileRenderer {
   public:
     /// As render_tiles.
     TileRenderer(const PixelRenderer& renderer, double in_scatter_tolerance,
                  std::span<const PixelStep> steps);
 
-    /// Traces the whole tile, even if only part of it is rendered: its lattice depends on all of
-    /// it, and its surfaces are lit in one batch.
+    /// Traces the whole tile, even if only a part of it is rendered: its lattice depends on all
+    /// pixels, and its surfaces are lit in one batch.
     void begin(const PixelWindow& tile);
 
-    /// Renders a pixel of the tile; the result is storage of the renderer's.
+    /// Renders a pixel of the tile; the result is valid until the next call.
     const PixelResult& render(int x, int y);
 
   private:
-    /// The light scattered into the ray of a pixel of the tile; valid until the next call.
+    /// Returns the light scattered into the ray of a pixel of the tile; valid until the next call.
     std::span<const double> in_scatter(std::size_t pixel);
 
     const PixelRenderer& renderer_;
     std::span<const PixelStep> steps_;
-    std::vector<InScatterLattice> lattices_;  // one per part; none: every pixel by itself
+    std::vector<InScatterLattice>
+        lattices_;  // one per part; none: every pixel's own ray is integrated
     PixelWindow tile_;
     Grid2D<PixelView> views_;                 // of the tile
     SurfaceLight light_;                      // on all their samples
     std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
     std::vector<double> in_scatter_;          // of the current pixel
-    std::vector<double> beside_, least_;      // of a part of all bands, in any pixel of the tile
+    std::vector<double> other_light_,
+        least_;  // by band: sum over the previous parts, and of one part
     PixelResult result_;
 };
 
@@ -72,13 +73,13 @@ void TileRenderer::begin(const PixelWindow& tile) {
         first_samples_.push_back(samples);
         samples += view.samples.size();
     }
-    beside_.assign(renderer_.in_scatter().band_count(), 0.0);
+    other_light_.assign(renderer_.in_scatter().band_count(), 0.0);
     for (InScatterLattice& lattice : lattices_) {
-        lattice.evaluate(tile, views_, beside_);
+        lattice.evaluate(tile, views_, other_light_);
         if (&lattice == &lattices_.back()) break;
-        least_.resize(beside_.size());
+        least_.resize(other_light_.size());
         lattice.find_least(least_);
-        add(beside_, least_);
+        add(other_light_, least_);
     }
 }
 
@@ -107,7 +108,7 @@ const PixelResult& TileRenderer::render(int x, int y) {
 
 constexpr int k_tile = InScatterLattice::k_tile;  // pixels along an edge
 
-// The part of the tile that begins at (x0, y0) within `bounds`.
+// Returns the part within `bounds` of the tile that begins at (x0, y0).
 PixelWindow tile_within(int x0, int y0, const PixelWindow& bounds) {
     return {std::max(x0, bounds.x0), std::max(y0, bounds.y0), std::min(x0 + k_tile, bounds.x1),
             std::min(y0 + k_tile, bounds.y1)};
@@ -161,7 +162,8 @@ void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
     const int columns = (window.x1 + k_tile - 1) / k_tile - left;
     const int rows = (window.y1 + k_tile - 1) / k_tile - top;
     const auto tiles = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-    // Counted in rows of pixels within tiles: a tile may take the reference integrator a minute.
+    // Progress counts rows of pixels within tiles, as the reference integrator may take a minute
+    // for a tile.
     const auto all = static_cast<double>(columns) * window.height();
     std::atomic<std::size_t> rows_done = 0;
     TileRendererPool pool(renderer, in_scatter_tolerance, steps);

@@ -9,16 +9,17 @@
 
 namespace uw {
 
-/// How closely in-scatter is interpolated between pixels (InScatterLattice); 0 for integrators
-/// meant for comparison: every pixel has its own ray.
+/// Returns the tolerance with which in-scattered light is interpolated between pixels
+/// (InScatterLattice); 0, which integrates every pixel's own ray, for integrators that are meant
+/// for comparison.
 double in_scatter_tolerance(const RenderDesc& render);
 
 /// Receives each finished pixel, from any thread.
 using PixelCallback = std::function<void(int x, int y, const PixelResult& pixel)>;
 
-/// Renders every pixel of a window of the image on all permitted threads, tile by tile: the
-/// surfaces that rays hit, the in-scatter on the way, and `steps` (Rendering). The pixels depend
-/// neither on the number of threads nor on the window. `in_scatter_tolerance`: that of
+/// Renders every pixel of a window of the image on all permitted threads, tile by tile: traces rays
+/// to surfaces, lights these, integrates in-scattering, and applies `steps` (Rendering). The pixels
+/// depend neither on the number of threads nor on the window. `in_scatter_tolerance`: that of
 /// InScatterLattice; 0 integrates every pixel's own ray. Throws Interrupted.
 void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
                   std::span<const PixelStep> steps, const PixelWindow& window,

@@ -8,8 +8,8 @@
 
 namespace uw {
 
-/// Turns the light of the finished image into the digital numbers of its camera's sensor, if they
-/// are wanted.
+/// Turns the light of the finished image into the digital numbers of its camera's sensor, if the
+/// layer is requested.
 class SensorPass final : public Pass {
   public:
     /// `frame`: the number of the image, on which the noise depends.

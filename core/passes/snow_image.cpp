@@ -12,25 +12,26 @@ namespace uw {
 
 namespace {
 
-// Smaller footprints [pixels, radius], and those whose edges are less wide [pixels, half], are
-// ellipses with the second moments of disk and blur, of which each pixel has exactly what it
-// covers: nothing else of an edge is seen.
+// Footprints with a smaller radius [pixels], or with edges of a smaller half width [pixels], are
+// drawn as ellipses with the second moments of disk and blur, whose area in each pixel is exact. An
+// image does not resolve more of such an edge.
 constexpr double k_small = 0.7, k_sharp = 0.25;
-// The least radius of an ellipse, and half width of a box, which are those of a point.
+// The minimum radius of an ellipse and half width of a box, which represent a point.
 constexpr double k_min_radius = 1e-3, k_min_half = 1e-6;
-// The steps of a path [pixels, or of the radius]: their spread, step^2 / 12, is less than 3 % of
-// that of a disk.
+// The steps along a path [pixels, or relative to the radius]. The variance that they leave out,
+// step^2 / 12, is less than 3 % of that of a disk.
 constexpr double k_step = 0.5, k_step_of_radius = 0.25;
 constexpr double k_max_steps = 4096;
-// Wider edges [pixels, half] need no samples within pixels.
+// Edges with a larger half width [pixels] need only one sample per pixel.
 constexpr double k_soft = 1.5;
-// Larger footprints hold so many samples that the shares add up to their area by themselves, to
-// 1 %: the edge of a disk of radius r, sampled n times per pixel, is off by less than 1/(n r)^1.5.
+// Larger footprints contain so many samples that the fractions need no normalization: they sum to 1
+// within 1 %, as the area of a disk of radius r, sampled n times per pixel, is off by less than
+// 1/(n r)^1.5.
 constexpr double k_large = 16;
-// So do those, long and thin, that are looked for in more pixels than this.
+// Neither do long and thin ones, whose bounding box has more pixels than this; it may be cropped.
 constexpr double k_max_pixels = 1 << 20;
 
-/// The standard deviations along x and y of the unit disk's image.
+/// Returns the standard deviations along x and y of the blurred disk.
 std::array<double, 2> deviations(const PlaneMap& disk, const PlaneMap& blur) {
     return {0.5 * std::sqrt(disk.xx * disk.xx + disk.xy * disk.xy + blur.xx * blur.xx +
                             blur.xy * blur.xy),
@@ -38,18 +39,19 @@ std::array<double, 2> deviations(const PlaneMap& disk, const PlaneMap& blur) {
                             blur.yy * blur.yy)};
 }
 
-/// Half the extent along x and y.
+/// Returns half of the extents along x and y.
 std::array<double, 2> extents(const PlaneMap& disk, const PlaneMap& blur) {
     return {std::hypot(disk.xx, disk.xy) + std::hypot(blur.xx, blur.xy),
             std::hypot(disk.yx, disk.yy) + std::hypot(blur.yx, blur.yy)};
 }
 
-/// A map from the plane to the unit disk of the ellipse with the second moments of both disks.
+/// Returns the map from the plane to the unit disk of the ellipse with the second moments of both
+/// disks.
 PlaneMap unit_from_ellipse(const PlaneMap& disk, const PlaneMap& blur) {
     const double xx = disk.xx * disk.xx + disk.xy * disk.xy + blur.xx * blur.xx + blur.xy * blur.xy;
     const double yy = disk.yx * disk.yx + disk.yy * disk.yy + blur.yx * blur.yx + blur.yy * blur.yy;
     const double xy = disk.xx * disk.yx + disk.xy * disk.yy + blur.xx * blur.yx + blur.xy * blur.yy;
-    // A root of that matrix (Cholesky's).
+    // The Cholesky decomposition of that matrix.
     const double x = std::max(k_min_radius, std::sqrt(xx)), skew = xy / x;
     const double y = std::max(k_min_radius, std::sqrt(std::max(0.0, yy - skew * skew)));
     return PlaneMap{x, skew, 0, y}.inverse();
@@ -67,19 +69,19 @@ double dot(const PlanePoint& a, const PlanePoint& b) {
     return a[0] * b[0] + a[1] * b[1];
 }
 
-/// The signed area of the part of the triangle 0, a, b that lies in the unit disk.
+/// Returns the signed area of the part of the triangle 0, a, b that lies in the unit disk.
 double area_in_disk(const PlanePoint& a, const PlanePoint& b) {
     const auto sector = [](const PlanePoint& from, const PlanePoint& to) {
         return 0.5 * std::atan2(cross(from, to), dot(from, to));
     };
-    const PlanePoint way{b[0] - a[0], b[1] - a[1]};
-    const double length = dot(way, way), middle = -dot(a, way);
+    const PlanePoint edge{b[0] - a[0], b[1] - a[1]};
+    const double length = dot(edge, edge), middle = -dot(a, edge);
     const double square = middle * middle - length * (dot(a, a) - 1);
     if (!(square > 0)) return sector(a, b);
     const double root = std::sqrt(square);
     const double begin = (middle - root) / length, end = (middle + root) / length;
     if (begin >= 1 || end <= 0) return sector(a, b);
-    const auto at = [&](double t) { return PlanePoint{a[0] + t * way[0], a[1] + t * way[1]}; };
+    const auto at = [&](double t) { return PlanePoint{a[0] + t * edge[0], a[1] + t * edge[1]}; };
     const PlanePoint enters = at(std::max(begin, 0.0)), leaves = at(std::min(end, 1.0));
     return (begin > 0 ? sector(a, enters) : 0) + 0.5 * cross(enters, leaves) +
            (end < 1 ? sector(leaves, b) : 0);
@@ -90,8 +92,8 @@ double overlap(double begin, double end, int pixel) {
 }
 
 int floor_of(double value) {
-    constexpr double k_most = 1e9;
-    return static_cast<int>(std::floor(std::clamp(value, -k_most, k_most)));
+    constexpr double k_max = 1e9;
+    return static_cast<int>(std::floor(std::clamp(value, -k_max, k_max)));
 }
 
 PixelWindow around(const std::array<double, 2>& at, const std::array<double, 2>& half) {
@@ -99,9 +101,9 @@ PixelWindow around(const std::array<double, 2>& at, const std::array<double, 2>&
             floor_of(at[1] + half[1]) + 1};
 }
 
-/// How much of a disk of radius `ratio`, at most 1, lies in the unit disk, `radius` between their
-/// centres: the lens between two circles.
-double share_within(double ratio, double radius) {
+/// Returns the fraction of a disk of radius `ratio` <= 1 that lies in the unit disk, at the
+/// distance `radius` between their centres: the lens between two circles.
+double fraction_within(double ratio, double radius) {
     const double r = ratio, d = radius;
     if (d <= 1 - r) return 1;
     if (d >= 1 + r) return 0;
@@ -113,19 +115,19 @@ double share_within(double ratio, double radius) {
     return lens / (std::numbers::pi * r * r);
 }
 
-/// share_within between 1 - ratio and 1 + ratio, from a table: to 2e-3.
+/// fraction_within between 1 - ratio and 1 + ratio, from a table: accurate to 2e-3.
 class SoftEdge {
   public:
     explicit SoftEdge(double ratio)
         : begin_(1 - ratio),
           per_distance_(ratio > 0 ? 0.5 * k_steps / ratio : 0),
-          shares_(table()[static_cast<std::size_t>(std::lround(ratio * k_ratios))]) {}
+          table_(table()[static_cast<std::size_t>(std::lround(ratio * k_ratios))]) {}
 
     double operator()(double radius) const {
         const double at = std::clamp((radius - begin_) * per_distance_, 0.0, k_steps - 1e-9);
         const auto i = static_cast<std::size_t>(at);
-        const double share = at - static_cast<double>(i);
-        return (1 - share) * shares_[i] + share * shares_[i + 1];
+        const double t = at - static_cast<double>(i);
+        return (1 - t) * table_[i] + t * table_[i + 1];
     }
 
   private:
@@ -133,22 +135,22 @@ class SoftEdge {
     using Table = std::array<std::array<double, k_steps + 1>, k_ratios + 1>;
 
     static const Table& table() {
-        static const Table shares = [] {
+        static const Table fractions = [] {
             Table all{};
             for (std::size_t r = 0; r <= k_ratios; ++r)
                 for (std::size_t i = 0; i <= k_steps; ++i) {
-                    // The edge of a sharp disk is a step, which only the ends of its table show.
+                    // The edge of a sharp disk is a step: only the ends of its table matter.
                     const double ratio = std::max(1e-3, static_cast<double>(r) / k_ratios);
                     const double at = static_cast<double>(i) / k_steps;
-                    all[r][i] = share_within(ratio, 1 - ratio + 2 * ratio * at);
+                    all[r][i] = fraction_within(ratio, 1 - ratio + 2 * ratio * at);
                 }
             return all;
         }();
-        return shares;
+        return fractions;
     }
 
     double begin_, per_distance_;
-    const std::array<double, k_steps + 1>& shares_;
+    const std::array<double, k_steps + 1>& table_;
 };
 
 }  // namespace
@@ -174,7 +176,7 @@ Footprint::Footprint(const Path& path, const PlaneMap& disk, const PlaneMap& blu
         half_ = {std::abs(ellipse.xx), std::hypot(ellipse.yx, ellipse.yy)};
         for (const double side : {-0.5, 0.5}) {
             const PlanePoint corner = unit_from_plane_ * PlanePoint{0.5, side};
-            reach_ = std::max(reach_, std::hypot(corner[0], corner[1]));
+            pixel_radius_ = std::max(pixel_radius_, std::hypot(corner[0], corner[1]));
         }
     } else {
         const bool is_of_disk = disk_radius >= blur_radius;
@@ -203,7 +205,7 @@ std::array<double, 2> Footprint::step_position(int step) const {
     return position(2 * (step + 0.5) / steps_ - 1);
 }
 
-/// The window of one position, with the way that it moves during its step.
+/// Returns the window of one position, extended by the motion during its step.
 PixelWindow Footprint::window_around(const std::array<double, 2>& at) const {
     std::array<double, 2> half = half_;
     if (steps_ > 1)
@@ -213,43 +215,43 @@ PixelWindow Footprint::window_around(const std::array<double, 2>& at) const {
     return around(at, half);
 }
 
-void Footprint::add_shares(const PixelWindow& window, Grid2D<double>& shares) const {
+void Footprint::add_fractions(const PixelWindow& window, Grid2D<double>& fractions) const {
     for (int i = 0; i < steps_; ++i) {
         const std::array<double, 2> at = step_position(i);
         if (!is_sharp_) {
-            add_soft(at, 1.0 / steps_, window, shares);
+            add_soft(at, 1.0 / steps_, window, fractions);
             continue;
         }
         if (!is_small_ || steps_ == 1) {
-            add_sharp(at, 1.0 / steps_, window, shares);
+            add_sharp(at, 1.0 / steps_, window, fractions);
             continue;
         }
-        // The box is as long as what it passes in the step: those of all steps join.
+        // The box is as long as the motion in its step, so that the boxes of successive steps join.
         const std::array<double, 2> begin = position(2.0 * i / steps_ - 1),
                                     end = position(2.0 * (i + 1) / steps_ - 1);
         const std::array<double, 2> half{std::hypot(half_[0], 0.5 * (end[0] - begin[0])),
                                          std::hypot(half_[1], 0.5 * (end[1] - begin[1]))};
-        add_box(at, half, 1.0 / steps_, window, shares);
+        add_box(at, half, 1.0 / steps_, window, fractions);
     }
 }
 
 void Footprint::add_box(const std::array<double, 2>& at, const std::array<double, 2>& half,
-                        double weight, const PixelWindow& window, Grid2D<double>& shares) const {
+                        double weight, const PixelWindow& window, Grid2D<double>& fractions) const {
     const PixelWindow inside = intersection(window, around(at, half));
     const double per_area = weight / (4 * half[0] * half[1]);
     for (int y = inside.y0; y < inside.y1; ++y) {
         const double height = overlap(at[1] - half[1], at[1] + half[1], y);
         for (int x = inside.x0; x < inside.x1; ++x)
-            shares(x - window.x0, y - window.y0) +=
+            fractions(x - window.x0, y - window.y0) +=
                 per_area * height * overlap(at[0] - half[0], at[0] + half[0], x);
     }
 }
 
 void Footprint::add_sharp(const std::array<double, 2>& at, double weight, const PixelWindow& window,
-                          Grid2D<double>& shares) const {
+                          Grid2D<double>& fractions) const {
     const PixelWindow whole = around(at, half_), inside = intersection(window, whole);
     if (whole.width() == 1 && whole.height() == 1 && inside.width() == 1 && inside.height() == 1) {
-        shares(inside.x0 - window.x0, inside.y0 - window.y0) += weight;
+        fractions(inside.x0 - window.x0, inside.y0 - window.y0) += weight;
         return;
     }
     const double per_area = weight / std::numbers::pi;  // of the unit disk
@@ -258,10 +260,10 @@ void Footprint::add_sharp(const std::array<double, 2>& at, double weight, const 
         for (int x = inside.x0; x < inside.x1; ++x) {
             const double u = x - at[0], v = y - at[1];
             const PlanePoint centre = unit_from_plane_ * PlanePoint{u + 0.5, v + 0.5};
-            const double away = std::hypot(centre[0], centre[1]);
-            if (away - reach_ >= 1) continue;
+            const double distance = std::hypot(centre[0], centre[1]);
+            if (distance - pixel_radius_ >= 1) continue;
             double area = pixel_area;
-            if (away + reach_ > 1) {
+            if (distance + pixel_radius_ > 1) {
                 const std::array<PlanePoint, 4> corners{unit_from_plane_ * PlanePoint{u, v},
                                                         unit_from_plane_ * PlanePoint{u + 1, v},
                                                         unit_from_plane_ * PlanePoint{u + 1, v + 1},
@@ -270,12 +272,12 @@ void Footprint::add_sharp(const std::array<double, 2>& at, double weight, const 
                 for (std::size_t i = 0; i < corners.size(); ++i)
                     area += area_in_disk(corners[i], corners[(i + 1) % corners.size()]);
             }
-            shares(x - window.x0, y - window.y0) += per_area * std::max(0.0, area);
+            fractions(x - window.x0, y - window.y0) += per_area * std::max(0.0, area);
         }
 }
 
 void Footprint::add_soft(const std::array<double, 2>& at, double weight, const PixelWindow& window,
-                         Grid2D<double>& shares) const {
+                         Grid2D<double>& fractions) const {
     const PixelWindow whole = around(at, half_), inside = intersection(window, whole);
     if (inside.x0 >= inside.x1 || inside.y0 >= inside.y1) return;
     const PixelWindow& drawn = is_scaled_ ? inside : whole;
@@ -286,7 +288,7 @@ void Footprint::add_soft(const std::array<double, 2>& at, double weight, const P
     const double per_sample = weight * (is_scaled_ ? scale_ / (samples_ * samples_) : 1 / sum);
     for (int y = inside.y0; y < inside.y1; ++y)
         for (int x = inside.x0; x < inside.x1; ++x)
-            shares(x - window.x0, y - window.y0) +=
+            fractions(x - window.x0, y - window.y0) +=
                 per_sample * samples(x - drawn.x0, y - drawn.y0);
 }
 
@@ -320,12 +322,13 @@ double Footprint::count_samples(const std::array<double, 2>& at, const PixelWind
 namespace {
 
 constexpr int k_snow_tile = 32;  // pixels along an edge
-// Beside the bands of a pixel: the shares hidden of surfaces and of the water, the distance held.
+// Values of a pixel after its bands: the fractions of surfaces and of in-scattered light that are
+// hidden, and the distance of a particle.
 enum : std::size_t { k_covered, k_hidden, k_held, k_others };
-// A particle that covers this much of a pixel is what ground truth holds.
+// A particle that covers this fraction of a pixel counts as visible in ground truth.
 constexpr double k_mostly = 0.5;
 
-/// The splats of each tile of a window, row by row.
+/// Indices of the splats that touch each tile of a window; tiles are in row order.
 class TileLists {
   public:
     explicit TileLists(const PixelWindow& window)
@@ -396,23 +399,23 @@ std::span<float> SnowImage::values(int x, int y) {
 
 void SnowImage::draw(const SnowSplat& splat, std::span<const float> radiance,
                      const PixelWindow& tile) {
-    thread_local Grid2D<double> shares;
+    thread_local Grid2D<double> fractions;
     const PixelWindow inside = intersection(splat.footprint.bounds(), tile);
-    shares.assign(inside.width(), inside.height());
-    splat.footprint.add_shares(inside, shares);
+    fractions.assign(inside.width(), inside.height());
+    splat.footprint.add_fractions(inside, fractions);
     for (int y = inside.y0; y < inside.y1; ++y)
         for (int x = inside.x0; x < inside.x1; ++x) {
             const double cover =
-                std::min(1.0, splat.footprint.area() * shares(x - inside.x0, y - inside.y0));
+                std::min(1.0, splat.footprint.area() * fractions(x - inside.x0, y - inside.y0));
             if (cover == 0) continue;
             const std::span<float> pixel = values(x, y);
             const std::span<float> others = pixel.subspan(bands_);
-            // The share of this particle that those before it leave.
-            const double seen = cover * (1 - static_cast<double>(others[k_covered]));
+            // The fraction of the pixel in which this particle is visible behind those before it.
+            const double visible = cover * (1 - static_cast<double>(others[k_covered]));
             for (std::size_t b = 0; b < bands_; ++b)
-                pixel[b] += static_cast<float>(seen * static_cast<double>(radiance[b]));
-            others[k_covered] += static_cast<float>(seen);
-            others[k_hidden] += static_cast<float>(seen * static_cast<double>(splat.hidden));
+                pixel[b] += static_cast<float>(visible * static_cast<double>(radiance[b]));
+            others[k_covered] += static_cast<float>(visible);
+            others[k_hidden] += static_cast<float>(visible * static_cast<double>(splat.hidden));
             if (cover >= k_mostly && others[k_held] == 0)
                 others[k_held] = static_cast<float>(splat.distance);
         }
@@ -429,7 +432,8 @@ SnowPixel SnowImage::pixel(int x, int y) const {
 
 namespace {
 
-// Pixels between nodes, over the whole image: a particle outside a crop may reach into it.
+// Spacing of the nodes [pixels], which cover the whole image: a particle outside a crop may extend
+// into it.
 constexpr int k_spacing = 32;
 constexpr int k_distances = 24;
 constexpr double k_nearest = 0.02, k_last = 200;  // m
@@ -477,10 +481,9 @@ WaterVeil::Light WaterVeil::light_up_to(double x, double y, double distance) con
     const int i = static_cast<int>(u), j = static_cast<int>(v);
     const auto next = std::ranges::upper_bound(distances_, distance);
     const auto at = static_cast<std::size_t>(next - distances_.begin());
-    // Linear between two distances, and from 0 at the first.
+    // Interpolate linearly between two distances, from 0 before the first.
     const double begin = at == 0 ? 0 : distances_[at - 1];
-    const double share =
-        at == distances_.size() ? 0 : (distance - begin) / (distances_[at] - begin);
+    const double t = at == distances_.size() ? 0 : (distance - begin) / (distances_[at] - begin);
     Light sum;
     for (const int dy : {0, 1})
         for (const int dx : {0, 1}) {
@@ -488,14 +491,13 @@ WaterVeil::Light WaterVeil::light_up_to(double x, double y, double distance) con
             const std::vector<Light>& node = nodes_(i + dx, j + dy);
             const Light before = at == 0 ? Light{} : node[at - 1];
             const Light after = at == node.size() ? before : node[at];
-            sum.all += weight * ((1 - share) * before.all + share * after.all);
-            sum.transmitted +=
-                weight * ((1 - share) * before.transmitted + share * after.transmitted);
+            sum.all += weight * ((1 - t) * before.all + t * after.all);
+            sum.transmitted += weight * ((1 - t) * before.transmitted + t * after.transmitted);
         }
     return sum;
 }
 
-double WaterVeil::share_beyond(double x, double y, double distance, double end) const {
+double WaterVeil::fraction_beyond(double x, double y, double distance, double end) const {
     const double all = light_up_to(x, y, end).all;
     if (!(all > 0)) return 0;
     return std::clamp(1 - light_up_to(x, y, distance).all / all, 0.0, 1.0);

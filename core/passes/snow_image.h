@@ -15,7 +15,7 @@
 
 namespace uw {
 
-/// A linear map of the plane: a column is where it takes an axis.
+/// A linear map of the plane; its columns are the images of the axes.
 struct PlaneMap {
     double xx = 0, yx = 0;  // first column
     double xy = 0, yy = 0;  // second
@@ -34,65 +34,65 @@ struct PlaneMap {
     }
 };
 
-/// What an image shows of a small sphere: its disk, blurred by the lens's aperture, which is an
-/// ellipse, and drawn out by what moves while the shutter is open [pixels].
+/// The image of a small sphere [pixels]: its disk, an ellipse, blurred by the lens's aperture and
+/// by motion while the shutter is open.
 class Footprint {
   public:
-    /// The position over the time that the shutter is open, t = -1 to 1: at + t linear + t^2
-    /// quadratic.
+    /// The position while the shutter is open, t = -1 to 1: at + t linear + t^2 quadratic.
     struct Path {
         std::array<double, 2> at{}, linear{}, quadratic{};
     };
 
-    /// `disk` and `blur` take the unit disk to what the sphere and a point out of focus look like;
-    /// a blur of 0 is a sharp image.
+    /// `disk` and `blur` map the unit disk to the sharp image of the sphere and to that of a point
+    /// out of focus; a blur of 0 is a sharp image.
     Footprint(const Path& path, const PlaneMap& disk, const PlaneMap& blur);
 
-    /// The area of the sphere's disk [pixels].
+    /// The area of the sphere's disk [pixels^2].
     double area() const { return area_; }
-    /// The pixels that it touches, wherever the image ends.
+    /// The pixels that the footprint touches, including those outside the image.
     const PixelWindow& bounds() const { return bounds_; }
 
-    /// Adds to each pixel of `window` the share of the footprint that falls into it, to
-    /// shares(x - window.x0, y - window.y0); they add up to 1 over all pixels of the plane.
-    void add_shares(const PixelWindow& window, Grid2D<double>& shares) const;
+    /// Adds the fraction of the footprint that lies in each pixel of `window` to fractions(x -
+    /// window.x0, y - window.y0). The fractions sum to 1 over all pixels of the plane.
+    void add_fractions(const PixelWindow& window, Grid2D<double>& fractions) const;
 
   private:
     std::array<double, 2> position(double t) const;
     std::array<double, 2> step_position(int step) const;
     void add_box(const std::array<double, 2>& at, const std::array<double, 2>& half, double weight,
-                 const PixelWindow& window, Grid2D<double>& shares) const;
+                 const PixelWindow& window, Grid2D<double>& fractions) const;
     void add_sharp(const std::array<double, 2>& at, double weight, const PixelWindow& window,
-                   Grid2D<double>& shares) const;
+                   Grid2D<double>& fractions) const;
     void add_soft(const std::array<double, 2>& at, double weight, const PixelWindow& window,
-                  Grid2D<double>& shares) const;
-    // How many samples of each pixel an ellipse holds; returns their sum.
+                  Grid2D<double>& fractions) const;
+    // Counts the samples of each pixel that lie in an ellipse; returns their sum.
     double count_samples(const std::array<double, 2>& at, const PixelWindow& window,
                          Grid2D<double>& counts) const;
     PixelWindow window_around(const std::array<double, 2>& at) const;
 
     Path path_;
     double area_ = 0;
-    bool is_small_ = false;         // a path of it is drawn as boxes of the same extent
-    bool is_sharp_ = false;         // an ellipse with a sharp edge
-    int steps_ = 1;                 // positions along the path
-    std::array<double, 2> half_{};  // of the box; of the box around the ellipse
-    PlaneMap unit_from_plane_;      // of the sharp ellipse, or the greater of disk and blur
-    double reach_ = 0;              // from the centre of a pixel to its corners, of the unit disk
-    double ratio_ = 0;              // of the lesser to it
-    int samples_ = 1;               // along each axis of a pixel
-    double scale_ = 1;              // of the shares of an ellipse
-    bool is_scaled_ = true;         // by scale_; else so that they add up to 1
+    bool is_small_ = false;  // if it moves, it is drawn as boxes with the same second moments
+    bool is_sharp_ = false;  // an ellipse with a sharp edge
+    int steps_ = 1;          // positions along the path
+    std::array<double, 2> half_{};  // half extents of the box, or of the box around the ellipse
+    PlaneMap unit_from_plane_;      // of the sharp ellipse, or of the greater one of disk and blur
+    double pixel_radius_ = 0;  // from a pixel's centre to its corners, in the unit disk's plane
+    double ratio_ = 0;       // radius of the smaller one of disk and blur, relative to the greater
+    int samples_ = 1;        // number along each axis of a pixel
+    double scale_ = 1;       // fraction per area of an ellipse
+    bool is_scaled_ = true;  // by scale_; if not, the fractions are normalized to sum to 1
     PixelWindow bounds_;
 };
 
-/// What an image shows of one particle.
+/// The image of one particle.
 struct SnowSplat {
     double distance = 0;   // in water [m]
     std::uint64_t id = 0;  // SnowParticle::id
-    /// The share of the light that the water scatters towards the pixel which comes from behind.
+    /// The fraction of the light scattered in along the pixel's ray that comes from behind the
+    /// particle.
     float hidden = 0;
-    std::uint32_t radiance = 0;  // index of its first band among SnowSplats::radiance
+    std::uint32_t radiance = 0;  // index of its first band in SnowSplats::radiance
     Footprint footprint;
 };
 
@@ -103,19 +103,19 @@ struct SnowSplats {
     void append(const SnowSplats& more);
 };
 
-/// What the particles in front of a pixel add to it and hide from it.
+/// The light of the particles in front of a pixel, and what they hide.
 struct SnowPixel {
     std::span<const float> radiance;  // by band, of all particles [W m^-2 sr^-1]
-    double transparency = 1;          // the share of a surface that they leave
-    double water = 1;                 // the share of the water's light that they leave
+    double transparency = 1;          // fraction of a surface that stays visible
+    double water = 1;                 // fraction of the in-scattered light that stays visible
     double held = 0;  // distance of the first that covers at least half of the pixel [m]; 0: none
 };
 
-/// The particles of an image, each before those behind it.
+/// The particles of an image, composited from front to back.
 class SnowImage {
   public:
-    /// Draws `splats` into the pixels of `window`, on all threads. The same particles give the same
-    /// pixels in any order and any window.
+    /// Draws `splats` into the pixels of `window`, on all threads. The pixels depend neither on the
+    /// order of the splats nor on the window.
     SnowImage(const PixelWindow& window, std::size_t bands, const SnowSplats& splats);
 
     SnowPixel pixel(int x, int y) const;
@@ -126,21 +126,22 @@ class SnowImage {
 
     PixelWindow window_;
     std::size_t bands_;
-    Grid2D<float> values_;  // of each pixel: bands_ of radiance, then what is left and held
+    Grid2D<float> values_;  // per pixel: bands_ of radiance, then fractions hidden and distance
 };
 
-/// How much of the light that the water scatters towards a pixel comes from how far: on a lattice
-/// over the image, as the mean over all bands. For what particles hide of it, which is little.
+/// The in-scattered light up to each distance, on a lattice over the image, as the mean over all
+/// bands. It determines how much of that light particles hide, for which this accuracy is enough.
 class WaterVeil {
   public:
-    /// `depth`: of the particles drawn (SnowModel::drawn_depth).
+    /// `depth`: the optical depth of the drawn particles up to a distance (SnowModel::drawn_depth).
     WaterVeil(const RaySource& rays, const Integrator& integrator,
               const std::function<double(double distance)>& depth);
 
-    /// The share of the water's light at an image position that comes from beyond `distance`, if it
-    /// ends at `end` [m]; 0 if there is none.
-    double share_beyond(double x, double y, double distance, double end) const;
-    /// e^-depth, as a mean over the water's light that ends at `end`; 1 if there is none.
+    /// Returns the fraction of the in-scattered light at an image position that comes from beyond
+    /// `distance`, if the water ends at `end` [m]; 0 if there is none.
+    double fraction_beyond(double x, double y, double distance, double end) const;
+    /// Returns the mean of e^-depth over the in-scattered light, if the water ends at `end`; 1 if
+    /// there is none.
     double mean_transmittance(double x, double y, double end) const;
 
   private:
@@ -153,24 +154,26 @@ class WaterVeil {
     Grid2D<std::vector<Light>> nodes_;  // up to each of the distances
 };
 
-/// What snow changes in the light of each pixel of an image: the particles' own light, and what
-/// they hide.
+/// Computes the change that snow makes to the light of each pixel of an image: the light of the
+/// particles minus what they hide.
 ///
-/// The water's coefficients hold the mean of what the particles drawn take away on the light's way
-/// to the camera. As the particles do so themselves, what lies behind a mean depth of them is
-/// brightened by e^depth first: over many seeds nothing is taken away twice.
+/// The water's coefficients contain the mean attenuation of the drawn particles along the path to
+/// the camera. As the particles also hide what lies behind them, that light is first multiplied by
+/// e^depth, where depth is the mean optical depth of the particles: on average over seeds, they
+/// attenuate only once.
 class SnowLayer {
   public:
-    /// `depth`: of the particles drawn, up to a distance (SnowModel::drawn_depth).
+    /// `depth`: the optical depth of the drawn particles up to a distance (SnowModel::drawn_depth).
     SnowLayer(SnowImage image, WaterVeil veil, std::function<double(double distance)> depth)
         : image_(std::move(image)), veil_(std::move(veil)), depth_(std::move(depth)) {}
 
-    /// Radiance [W m^-2 sr^-1], negative where more is hidden than added, of a pixel whose water
-    /// ends at `end` [m] and scatters `water` towards the camera, where `surface` is its other
-    /// light.
+    /// Returns the radiance [W m^-2 sr^-1] that snow adds to a pixel; it is negative where snow
+    /// hides more than it adds. The pixel's water ends at `end` [m], its in-scattered light is
+    /// `water`, and all its other light is `surface`.
     Spectrum radiance(int x, int y, double end, const Spectrum& surface,
                       const Spectrum& water) const;
-    /// Distance of the particle that covers at least half of the pixel [m]; 0: none does.
+    /// The distance of the first particle that covers at least half of the pixel [m]; 0 if none
+    /// does.
     double held(int x, int y) const { return image_.pixel(x, y).held; }
 
   private:

@@ -18,10 +18,10 @@ bool has_small_factors(int count) {
     return count == 1;
 }
 
-// The quintic B-spline at a distance of `x` nodes.
+// Returns the quintic B-spline at a distance of `x` nodes.
 double quintic(double x) {
-    const auto power = [x](double reach) {
-        const double t = std::max(0.0, reach - x);
+    const auto power = [x](double extent) {
+        const double t = std::max(0.0, extent - x);
         return t * t * t * t * t;
     };
     return (power(3) - 6 * power(2) + 15 * power(1)) / 120;
@@ -44,10 +44,10 @@ SplineLine::SplineLine(int pixels, int nodes) : nodes_(nodes) {
     }
 }
 
-/// The node that a node beyond either end is the mirror image of.
+/// Returns the node of which `node`, which may lie beyond either end, is the mirror image.
 int SplineLine::reflected(int node) const {
-    const int place = ((node % (2 * nodes_)) + 2 * nodes_) % (2 * nodes_);
-    return place < nodes_ ? place : 2 * nodes_ - 1 - place;
+    const int position = ((node % (2 * nodes_)) + 2 * nodes_) % (2 * nodes_);
+    return position < nodes_ ? position : 2 * nodes_ - 1 - position;
 }
 
 void SplineLine::spread(std::span<const double> pixels, std::span<double> nodes) const {
@@ -77,8 +77,8 @@ double SplineLine::response(int k) const {
 }
 
 int SplineLine::node_count(int pixels, double spacing) {
-    constexpr int k_least = 16;
-    int count = std::max(k_least, static_cast<int>(std::ceil(pixels / spacing)));
+    constexpr int k_min = 16;
+    int count = std::max(k_min, static_cast<int>(std::ceil(pixels / spacing)));
     while (count < pixels && !has_small_factors(count)) ++count;
     return std::min(count, pixels);
 }
@@ -109,8 +109,8 @@ void SplineGrid::means(const RowSource& pixels, Grid2D<float>& nodes) const {
         for (int y = 0; y < height_; ++y) {
             if (lit[static_cast<std::size_t>(y)] == 0) continue;
             y_.for_each_tap(y, [&](int node, double weight) {
-                const auto share = static_cast<float>(unit * weight);
-                for (int x = begin; x < end; ++x) nodes(x, node) += share * lines(x, y);
+                const auto scale = static_cast<float>(unit * weight);
+                for (int x = begin; x < end; ++x) nodes(x, node) += scale * lines(x, y);
             });
         }
     });

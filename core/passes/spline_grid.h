@@ -10,14 +10,13 @@
 
 namespace uw {
 
-/// A line of pixels and the nodes of a quintic B-spline on it, both at the centres of equal parts
-/// of the line, both extended by reflection at its ends. A line with as many nodes as pixels is its
-/// own spline.
+/// A quintic B-spline on a line of pixels. Pixels and nodes lie at the centres of equal parts of
+/// the line and are extended by reflection at its ends. With as many nodes as pixels, spreading and
+/// interpolation are the identity.
 ///
-/// The cosine transform of what `spread` writes is that of the pixels times `response`, and the
-/// spectrum of what `interpolate` writes is that of the coefficients times `response`, but for
-/// aliases: those of frequencies near whole numbers of cycles per node, which the spline
-/// suppresses, and those close to half a cycle, which are left to a kernel without such
+/// `spread` multiplies the cosine transform of the pixels by `response`, and `interpolate` that of
+/// the coefficients, except for aliases. The spline suppresses those of frequencies near whole
+/// numbers of cycles per node; those near half a cycle are left to a kernel without such
 /// frequencies.
 class SplineLine {
   public:
@@ -27,7 +26,7 @@ class SplineLine {
     int nodes() const { return nodes_; }
     /// Whether pixels and nodes are the same.
     bool is_identity() const { return taps_.empty(); }
-    /// Calls `tap(node, weight)` for each node that pixel `i` has a share in.
+    /// Calls `tap(node, weight)` for each node whose B-spline is not zero at pixel `i`.
     template <class Tap>
     void for_each_tap(int i, const Tap& tap) const {
         if (is_identity()) {
@@ -48,15 +47,15 @@ class SplineLine {
             tap(reflected(i + static_cast<int>(n) - 2), k_at_nodes[n]);
     }
 
-    /// Adds each pixel to the nodes around it.
+    /// Adds each pixel to the nodes around it, weighted by their B-splines.
     void spread(std::span<const double> pixels, std::span<double> nodes) const;
-    /// The values at the pixels of the spline with the coefficients `nodes`.
+    /// Evaluates the spline with the coefficients `nodes` at the pixels.
     void interpolate(std::span<const double> nodes, std::span<double> pixels) const;
-    /// The spline's transform at frequency `k`, k / (2 nodes) cycles per node.
+    /// The Fourier transform of the B-spline at frequency `k`, k / (2 nodes) cycles per node.
     double response(int k) const;
 
-    /// The number of nodes for a line of `pixels`: at least 1 per `spacing` pixels and 16 in all,
-    /// of small prime factors, but never more than pixels.
+    /// Returns the number of nodes for a line of `pixels`: at least 1 per `spacing` pixels and 16
+    /// in all, a product of small primes, but no more than there are pixels.
     static int node_count(int pixels, double spacing);
 
   private:
@@ -64,7 +63,7 @@ class SplineLine {
     static constexpr std::array<double, 5> k_at_nodes{1. / 120, 26. / 120, 66. / 120, 26. / 120,
                                                       1. / 120};
 
-    /// Where a pixel lies among the nodes, and its share in each of them.
+    /// The nodes around a pixel, and the values of their B-splines at the pixel.
     static constexpr std::size_t k_taps = 6;
     struct Taps {
         std::array<int, k_taps> nodes{};
@@ -87,7 +86,7 @@ using RowSink = std::function<void(int y, std::span<const double> row)>;
 /// The nodes of a spline on the pixels of an image: SplineLine along both axes.
 class SplineGrid {
   public:
-    /// Nodes about `spacing` >= 1 pixels apart.
+    /// The nodes lie about `spacing` >= 1 pixels apart.
     SplineGrid(int width, int height, double spacing)
         : width_(width),
           height_(height),
@@ -101,14 +100,14 @@ class SplineGrid {
     const SplineLine& x() const { return x_; }
     const SplineLine& y() const { return y_; }
 
-    /// The means of an image about each node, weighted as SplineLine::spread does. The result does
-    /// not depend on the number of threads.
+    /// Computes the means of an image around each node, weighted as by SplineLine::spread. The
+    /// result does not depend on the number of threads.
     void means(const RowSource& pixels, Grid2D<float>& nodes) const;
-    /// The values at the nodes of the spline with these coefficients.
+    /// Evaluates the spline with these coefficients at the nodes.
     void values(const Grid2D<float>& coefficients, Grid2D<float>& nodes) const;
-    /// Passes its values at the pixels to `sink`, row by row, from any thread.
+    /// Evaluates it at the pixels, and passes the rows to `sink`, from any thread.
     void interpolate(const Grid2D<float>& coefficients, const RowSink& sink) const;
-    /// The values at pixel (x, y) of two splines.
+    /// Evaluates two splines at pixel (x, y).
     std::array<float, 2> at(const Grid2D<float>& first, const Grid2D<float>& second, int x,
                             int y) const;
 

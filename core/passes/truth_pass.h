@@ -4,12 +4,13 @@
 
 namespace uw {
 
-/// Ground truth: what the pixels' centres see, and where that is in other images. Where nothing
-/// moves while the shutter is open, the passes that render the pixels find it with their rays;
-/// of an exposure it is that of the middle, and takes rays of its own.
+/// Renders ground truth: what the pixels' centres see, and where that is in other images. If
+/// nothing moves while the shutter is open, the passes that render the pixels find it with their
+/// own rays. Otherwise it is that of the middle of the exposure, for which this pass traces rays.
 class TruthPass final : public Pass {
   public:
-    /// Whether the scene has other frames and other cameras, in which to look for what is seen.
+    /// The arguments say whether the scene has other frames and other cameras in which points can
+    /// be found.
     TruthPass(bool has_other_frames, bool has_other_cameras)
         : Pass({}, Of::truth),
           has_other_frames_(has_other_frames),

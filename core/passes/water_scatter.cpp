@@ -10,14 +10,14 @@ namespace uw {
 
 namespace {
 
-// Light in a form that can be blurred: finite and non-negative.
+// Makes a value finite and non-negative, so that it can be blurred.
 float bounded(double value) {
-    constexpr double k_most = 1e30;
-    return value > 0 ? static_cast<float>(std::min(value, k_most)) : 0.0F;
+    constexpr double k_max = 1e30;
+    return value > 0 ? static_cast<float>(std::min(value, k_max)) : 0.0F;
 }
 
-/// Positions of the nodes of one line among those of another on the same stretch, both at the
-/// centres of equal parts: linear interpolation, and extrapolation by half a part at the ends.
+/// Positions of the nodes of one line among those of another on the same interval, both at the
+/// centres of equal parts, for linear interpolation, and extrapolation by half a part at the ends.
 struct LinearTaps {
     std::vector<int> first;
     std::vector<float> fraction;  // towards the next
@@ -63,7 +63,7 @@ SlabImages SlabLattice::images() const {
 }
 
 SlabLattice::NodeRay SlabLattice::find_ray(int i, int j) const {
-    // The pixels whose centre lies in the node's part of the image.
+    // The first pixel whose centre lies in the node's part of the image.
     const auto begin = [](int node, int nodes, int pixels) {
         return static_cast<int>(std::ceil(1.0 * node * pixels / nodes - 0.5));
     };
@@ -100,7 +100,7 @@ SlabLattice::NodeRay SlabLattice::find_ray(int i, int j) const {
         node.end = slabs_.depth(*view.ray).distance(deepest);
     }
     node.ray = view.ray;
-    view.has_hit = false;  // only factors that do not depend on it are applied before the blur
+    view.has_hit = false;  // only factors that do not depend on the hit are applied before the blur
     if (sensor_.factors_before_blur()) node.factor = renderer_.pixel_factor(view);
     return node;
 }
@@ -146,17 +146,17 @@ void SlabLattice::fill_hidden(Grid2D<char>& visible, SlabImages& slab) {
         for (int y = 0; y < visible.height(); ++y) {
             for (int x = 0; x < visible.width(); ++x) {
                 if (before(x, y) != 0) continue;
-                std::vector<std::size_t> seen;
+                std::vector<std::size_t> visible_nodes;
                 for (int v = std::max(0, y - 1); v < std::min(y + 2, visible.height()); ++v)
                     for (int u = std::max(0, x - 1); u < std::min(x + 2, visible.width()); ++u)
-                        if (before(u, v) != 0) seen.push_back(before.index(u, v));
-                if (seen.empty()) continue;
+                        if (before(u, v) != 0) visible_nodes.push_back(before.index(u, v));
+                if (visible_nodes.empty()) continue;
                 const std::size_t node = before.index(x, y);
                 visible[node] = 1;
                 slab.fill_from(slab, [&](const ImagePlane& from, ImagePlane& to) {
                     float sum = 0;
-                    for (const std::size_t i : seen) sum += from[i];
-                    to[node] = sum / static_cast<float>(seen.size());
+                    for (const std::size_t i : visible_nodes) sum += from[i];
+                    to[node] = sum / static_cast<float>(visible_nodes.size());
                 });
             }
         }
@@ -187,7 +187,7 @@ void SlabLattice::interpolate(const ImagePlane& plane, const SplineGrid& grid,
     });
 }
 
-/// What is kept of slabs that are scattered on the same grid.
+/// The state of slabs that are scattered on the same grid.
 struct WaterScatter::Level {
     Level(double of_spacing, const ForwardScatterDesc& desc, const ScatterPlane& plane,
           const Medium& medium, std::size_t groups)
@@ -198,7 +198,7 @@ struct WaterScatter::Level {
                medium.constituents.size()) {
         for (std::size_t i = 0; i < groups * slab.weight.size(); ++i) {
             to_camera.emplace_back(desc, plane, medium, of_spacing);
-            fallen.emplace_back(grid.columns(), grid.rows());
+            before.emplace_back(grid.columns(), grid.rows());
             within.emplace_back(grid.columns(), grid.rows());
         }
     }
@@ -206,15 +206,16 @@ struct WaterScatter::Level {
     double spacing;
     SplineGrid grid;
     PathScatter from_lamps;
-    std::vector<PathScatter> to_camera;  // of each channel
-    // What (17) adds to each in the slabs before, and in the current one: coefficients of the
-    // spline.
-    std::vector<ImagePlane> fallen, within;
+    std::vector<PathScatter> to_camera;  // per channel: band of a group
+    // The light that (17) adds to each channel in all previous slabs, and in the current one:
+    // spline coefficients.
+    std::vector<ImagePlane> before, within;
     SlabImages slab;  // at the nodes
-    // About each: the fraction of the pixels that sees some of the slab, how much of it they see,
-    // and the fraction that sees beyond it, to face `seen_at`.
-    ImagePlane seen, share, seen_next;
-    std::size_t seen_at = std::numeric_limits<std::size_t>::max();
+    // Means over the pixels around each node: the fraction that sees some of the slab, that
+    // fraction times the part of the slab that it sees, and the fraction that sees beyond the slab,
+    // whose far face is `visible_at`.
+    ImagePlane visible, coverage, visible_next;
+    std::size_t visible_at = std::numeric_limits<std::size_t>::max();
     ImagePlane source, values;
 };
 
@@ -239,25 +240,26 @@ void WaterScatter::add(std::size_t index, const SlabImages& images, std::vector<
     level_->slab.fill_from(images, [&](const ImagePlane& from, ImagePlane& to) {
         lattice_.interpolate(from, level_->grid, to);
     });
-    if (cut_) cover(index);
+    if (cut_) find_visible_fractions(index);
     for (std::size_t g = 0; g < level_->slab.light.size(); ++g)
         for (std::size_t b = 0; b < level_->slab.weight.size(); ++b) scatter(g, b);
     if (cut_) gather_ends(index);
-    for (std::size_t channel = 0; channel < level_->fallen.size(); ++channel)
-        for (std::size_t i = 0; i < level_->fallen[channel].size(); ++i)
-            level_->fallen[channel][i] += level_->within[channel][i];
+    for (std::size_t channel = 0; channel < level_->before.size(); ++channel)
+        for (std::size_t i = 0; i < level_->before[channel].size(); ++i)
+            level_->before[channel][i] += level_->within[channel][i];
     next_ = index + 1;
 }
 
-/// Where surfaces cut into the slab, its light has edges, and the grid must be as fine as its
-/// narrowest kernel needs. Elsewhere it is as smooth as the lattice.
+/// Returns the spacing of the grid for a slab. Where surfaces cut into it, its light has edges, and
+/// the grid must be as fine as the narrowest kernel needs. Elsewhere its light is as smooth as the
+/// lattice.
 double WaterScatter::spacing_for(std::size_t index, const SlabImages& images) const {
     if (!(extent_.nearest < slabs_.face(index + 1))) return spacing_;
     double least = std::numeric_limits<double>::infinity();
     for (const PathImage* path : {&images.from_lamps, &images.to_camera})
         for (const float length : path->length())
             if (length > 0) least = std::min(least, static_cast<double>(length));
-    // Coarser than for surfaces: edges are there, but not the details of texture.
+    // The grid may be coarser than for surfaces: there are edges, but no textures.
     const bool exponential = desc_.shape == ForwardScatterDesc::Shape::exponential;
     const double nodes_per_width = exponential ? 1.0 : 1.5;
     const double needed = nodes_per_width * ForwardScatter::width_per_metre(desc_, plane_) * least;
@@ -273,14 +275,15 @@ void WaterScatter::prepare(std::size_t index, const SlabImages& images,
     if (!level_)
         level_ = std::make_unique<Level>(spacing, desc_, plane_, medium_, images.light.size());
     sums_ = &sums;
-    // What ends at the slab's face ends in it: beyond the face there is nothing more of that pixel.
+    // Water that ends at the slab's far face counts as ending in the slab, since the pixel sees
+    // nothing beyond that face.
     cut_ = extent_.nearest <= slabs_.face(index + 1);
 }
 
-void WaterScatter::cover(std::size_t index) {
+void WaterScatter::find_visible_fractions(std::size_t index) {
     Level& level = *level_;
     const double begin = slabs_.face(index), end = slabs_.face(index + 1);
-    // Means of what `of(pixel)` is.
+    // Computes the means of `of(pixel)` around each node.
     const auto means = [&](const auto& of, ImagePlane& nodes) {
         level.grid.means(
             [&](int y, std::span<double> row) {
@@ -294,28 +297,28 @@ void WaterScatter::cover(std::size_t index) {
             },
             nodes);
     };
-    if (level.seen_at == index)
-        level.seen = level.seen_next;
+    if (level.visible_at == index)
+        level.visible = level.visible_next;
     else
-        means([&](std::size_t pixel) { return water_.beyond(pixel, begin); }, level.seen);
-    // Only pixels whose water ends in the slab see more of this one than of the next.
+        means([&](std::size_t pixel) { return water_.beyond(pixel, begin); }, level.visible);
+    // Only pixels whose water ends in this slab see more of it than of the next.
     const auto of_ends = [&](const auto& value) {
         return [&, value](std::size_t pixel) {
             double sum = 0;
-            water_.for_each(pixel, [&](double share, double z) {
-                if (z > begin && z <= end) sum += share * value(z);
+            water_.for_each(pixel, [&](double fraction, double z) {
+                if (z > begin && z <= end) sum += fraction * value(z);
             });
             return sum;
         };
     };
     means(of_ends([](double) { return 1.0; }), level.source);
-    means(of_ends([&](double z) { return (z - begin) / (end - begin); }), level.share);
-    level.seen_next = level.seen;
-    for (std::size_t i = 0; i < level.seen.size(); ++i) {
-        level.seen_next[i] = std::max(0.0F, level.seen[i] - level.source[i]);
-        level.share[i] += level.seen_next[i];
+    means(of_ends([&](double z) { return (z - begin) / (end - begin); }), level.coverage);
+    level.visible_next = level.visible;
+    for (std::size_t i = 0; i < level.visible.size(); ++i) {
+        level.visible_next[i] = std::max(0.0F, level.visible[i] - level.source[i]);
+        level.coverage[i] += level.visible_next[i];
     }
-    level.seen_at = index + 1;
+    level.visible_at = index + 1;
 }
 
 void WaterScatter::scatter(std::size_t group, std::size_t band) {
@@ -325,13 +328,13 @@ void WaterScatter::scatter(std::size_t group, std::size_t band) {
     const ImagePlane& weight = level.slab.weight[band];
     level.source = light;
     if (cut_)
-        for (std::size_t i = 0; i < light.size(); ++i) level.source[i] *= level.seen[i];
+        for (std::size_t i = 0; i < light.size(); ++i) level.source[i] *= level.visible[i];
     level.from_lamps.add(band, level.source, level.slab.from_lamps, cut_);
     ImagePlane& within = level.within[channel];
     level.from_lamps.finish(within);
     level.grid.values(within, level.values);
     for (std::size_t i = 0; i < light.size(); ++i) {
-        const float part = cut_ ? weight[i] * level.share[i] : weight[i];
+        const float part = cut_ ? weight[i] * level.coverage[i] : weight[i];
         level.source[i] = part * (light[i] + std::max(0.0F, level.values[i]));
         within[i] *= weight[i];
     }
@@ -344,14 +347,14 @@ void WaterScatter::gather_ends(std::size_t index) const {
         const int y = static_cast<int>(row);
         for (int x = 0; x < plane_.width; ++x) {
             const std::size_t pixel = pixels_.index(x, y);
-            water_.for_each(pixel, [&](double share, double z) {
+            water_.for_each(pixel, [&](double fraction, double z) {
                 if (!(z > begin && z <= end)) return;
                 const auto part = static_cast<float>((z - begin) / (end - begin));
                 for (std::size_t channel = 0; channel < sums_->size(); ++channel) {
                     const auto [before, within] =
-                        level_->grid.at(level_->fallen[channel], level_->within[channel], x, y);
+                        level_->grid.at(level_->before[channel], level_->within[channel], x, y);
                     (*sums_)[channel][pixel] +=
-                        static_cast<float>(share) * std::max(0.0F, before + part * within);
+                        static_cast<float>(fraction) * std::max(0.0F, before + part * within);
                 }
             });
         }
@@ -372,7 +375,7 @@ void WaterScatter::finish() {
     if (!level_) return;
     for (std::size_t channel = 0; channel < sums_->size(); ++channel) {
         ImagePlane& sum = (*sums_)[channel];
-        gather_beyond(level_->fallen[channel], sum);
+        gather_beyond(level_->before[channel], sum);
         level_->to_camera[channel].finish_pixels(pixels_);
         for (std::size_t i = 0; i < sum.size(); ++i)
             sum[i] += static_cast<float>(water_.alpha(i)) * pixels_[i];

@@ -10,17 +10,17 @@
 
 namespace uw {
 
-/// One slab of water as images over a grid.
+/// The light of one slab of water, and its paths, as images over a grid.
 struct SlabImages {
     std::vector<std::vector<ImagePlane>> light;  // [group of lamps][band]: E_s
-    std::vector<ImagePlane> weight;              // per band [m]: light at the camera per E_s
+    std::vector<ImagePlane> weight;              // per band [m]: radiance at the camera per E_s
     PathImage from_lamps, to_camera;
 
     SlabImages() = default;
     SlabImages(int width, int height, std::size_t groups, std::size_t bands,
                std::size_t constituents);
 
-    /// Calls `change` with each plane of `from` and its own.
+    /// Calls `change` with each plane of `from` and the corresponding one of this slab.
     template <class Change>
     void fill_from(const SlabImages& from, const Change& change) {
         for (std::size_t g = 0; g < light.size(); ++g)
@@ -31,12 +31,13 @@ struct SlabImages {
     }
 };
 
-/// The in-scatter of slabs of water at the nodes of a lattice over the image, at the centres of
-/// equal parts of it: each has a ray through its centre or, if another pixel of its part sees
-/// farther, through that pixel. What is hidden from a node's ray continues what its neighbours see.
+/// Integrates in-scattering by slabs of water at the nodes of a lattice over the image, which lie
+/// at the centres of equal parts of it. A node's ray passes through its centre or, if another pixel
+/// of its part sees farther, through that pixel. Slabs that are hidden from a node's ray take the
+/// values of its neighbours.
 class SlabLattice {
   public:
-    /// Lamps of the same group are taken together. All references must outlive the lattice.
+    /// The light of the lamps of a group is summed. All references must outlive the lattice.
     SlabLattice(const PixelRenderer& renderer, const InScatterSlabs& slabs,
                 const VisibleWater& water, std::vector<std::vector<std::size_t>> groups,
                 const SensorModel& sensor, double spacing);
@@ -53,14 +54,14 @@ class SlabLattice {
   private:
     struct NodeRay {
         std::optional<Ray> ray;
-        double end = 0;  // of the water along it [m]
+        double end = 0;  // distance to the end of the water along it [m]
         double factor = 1;
     };
 
     NodeRay find_ray(int i, int j) const;
     void store(const SlabLight& light, const NodeRay& ray, std::size_t node,
                SlabImages& slab) const;
-    // Continues what is visible into what is not.
+    // Extrapolates from the nodes that see the slab to those that do not.
     static void fill_hidden(Grid2D<char>& visible, SlabImages& slab);
 
     const PixelRenderer& renderer_;
@@ -71,17 +72,18 @@ class SlabLattice {
     Grid2D<NodeRay> rays_;
 };
 
-/// Forward scatter of light that the water scatters to the camera, slab by slab:
+/// Applies forward scatter to in-scattered light, slab by slab:
 ///
 ///     (17)  E_s = E_s' + E_s' * g(R_lamps)
 ///     (18)  L_b = sum_i L_i + L_i * g(R_i)
 ///
-/// A slab's light is known at the nodes of a lattice; there it is blurred, on a grid as fine as the
-/// kernels need it where surfaces cut into the slab, and as fine as the lattice elsewhere. Only how
-/// much of a slab each pixel sees is taken pixel by pixel.
+/// A slab's light is known at the nodes of a lattice. It is blurred on a grid as fine as the
+/// lattice or, where surfaces cut into the slab, as fine as the kernels need. Only the part of a
+/// slab that each pixel sees is evaluated pixel by pixel.
 class WaterScatter {
   public:
-    /// `lattice`: of `slabs`, with `spacing`. All references must outlive this object; desc.K > 0.
+    /// `lattice` is that of `slabs`, with the same `spacing`. All references must outlive this
+    /// object. Precondition: desc.K > 0.
     WaterScatter(const ForwardScatterDesc& desc, const ScatterPlane& plane, const Medium& medium,
                  const InScatterSlabs& slabs, const VisibleWater& water, const SlabLattice& lattice,
                  double spacing);
@@ -89,9 +91,9 @@ class WaterScatter {
     WaterScatter(const WaterScatter&) = delete;
     WaterScatter& operator=(const WaterScatter&) = delete;
 
-    /// Scatters slab `index`, of which `images` is the lattice's; slabs come in ascending order.
-    /// What they add goes into `sums`, one plane for each band of each group, by the time of
-    /// `finish`.
+    /// Scatters slab `index`, whose light at the lattice is `images`. Slabs must be added in
+    /// ascending order. Their light has been added to `sums`, one plane for each band of each
+    /// group, when `finish` returns.
     void add(std::size_t index, const SlabImages& images, std::vector<ImagePlane>& sums);
     void finish();
 
@@ -100,10 +102,11 @@ class WaterScatter {
 
     double spacing_for(std::size_t index, const SlabImages& images) const;
     void prepare(std::size_t index, const SlabImages& images, std::vector<ImagePlane>& sums);
-    // How much of the slab is seen about each node.
-    void cover(std::size_t index);
+    // Computes how much of the slab is visible around each node.
+    void find_visible_fractions(std::size_t index);
     void scatter(std::size_t group, std::size_t band);
-    // What (17) adds in pixels whose water ends in the slab, and in those that see beyond it.
+    // Add the light of (17) to pixels whose water ends in the slab, and to those that see beyond
+    // it.
     void gather_ends(std::size_t index) const;
     void gather_beyond(const ImagePlane& before, ImagePlane& sum) const;
 
@@ -115,9 +118,9 @@ class WaterScatter {
     const SlabLattice& lattice_;
     double spacing_;
     VisibleWater::Extent extent_;
-    std::unique_ptr<Level> level_;  // of the slab added last
+    std::unique_ptr<Level> level_;  // of the slab that was added last
     std::vector<ImagePlane>* sums_ = nullptr;
-    std::size_t next_ = 0;  // slab
+    std::size_t next_ = 0;  // index of the next slab
     bool cut_ = false;      // whether some pixel does not see all of the current slab
     ImagePlane pixels_;
 };

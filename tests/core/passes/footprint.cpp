@@ -15,22 +15,22 @@ struct Moments {
     double sum = 0, x = 0, y = 0, variance_x = 0, variance_y = 0, most = 0;
 };
 
-/// The moments of the pixels' shares, taken at their centres.
+/// The moments of the pixels' fractions, taken at their centres.
 Moments moments_of(const Footprint& footprint) {
     const PixelWindow& bounds = footprint.bounds();
-    Grid2D<double> shares(bounds.width(), bounds.height());
-    footprint.add_shares(bounds, shares);
+    Grid2D<double> fractions(bounds.width(), bounds.height());
+    footprint.add_fractions(bounds, fractions);
     Moments m;
     double xx = 0, yy = 0;
     for (int y = bounds.y0; y < bounds.y1; ++y)
         for (int x = bounds.x0; x < bounds.x1; ++x) {
-            const double share = shares(x - bounds.x0, y - bounds.y0);
-            m.sum += share;
-            m.x += share * (x + 0.5);
-            m.y += share * (y + 0.5);
-            xx += share * (x + 0.5) * (x + 0.5);
-            yy += share * (y + 0.5) * (y + 0.5);
-            m.most = std::max(m.most, share);
+            const double fraction = fractions(x - bounds.x0, y - bounds.y0);
+            m.sum += fraction;
+            m.x += fraction * (x + 0.5);
+            m.y += fraction * (y + 0.5);
+            xx += fraction * (x + 0.5) * (x + 0.5);
+            yy += fraction * (y + 0.5) * (y + 0.5);
+            m.most = std::max(m.most, fraction);
         }
     m.x /= m.sum;
     m.y /= m.sum;
@@ -83,15 +83,15 @@ TEST(Footprint, VariancesAddUp) {
             }
 }
 
-/// The shares of a point that moves are the time that it spends in each pixel.
+/// The fractions of a point that moves are the time that it spends in each pixel.
 TEST(Footprint, APointThatMovesIsAsBrightAsItIsLongInAPixel) {
     Footprint::Path path{{10.5, 4.25}, {4, 0}, {}};  // from 6.5 to 14.5
     const Footprint footprint(path, circle(1e-4), {});
-    Grid2D<double> shares(20, 10);
-    footprint.add_shares({0, 0, 20, 10}, shares);
+    Grid2D<double> fractions(20, 10);
+    footprint.add_fractions({0, 0, 20, 10}, fractions);
     for (int x = 0; x < 20; ++x) {
         const double expected = x < 6 || x > 14 ? 0 : (x == 6 || x == 14 ? 0.5 : 1) / 8.0;
-        EXPECT_NEAR(shares(x, 4), expected, 1e-4) << x;
+        EXPECT_NEAR(fractions(x, 4), expected, 1e-4) << x;
     }
 }
 
@@ -118,24 +118,24 @@ double covered(double x, double y, double at_x, double at_y, double radius) {
     return count / double(k_steps * k_steps);
 }
 
-/// A flake is a disk, however small and wherever it lies in a pixel: each pixel has the share of
+/// A flake is a disk, however small and wherever it lies in a pixel: each pixel has the fraction of
 /// its light that it covers of the disk.
 TEST(Footprint, EachPixelHasWhatItCoversOfTheDisk) {
     for (const double radius : {0.05, 0.2, 0.45, 0.69, 0.75, 1.3, 2.4, 5.0})
         for (const auto& [at_x, at_y] : std::vector<std::pair<double, double>>{
                  {8.5, 8.5}, {8.0, 8.0}, {8.1, 8.35}, {8.93, 8.07}, {8.71, 8.5}}) {
             const Footprint footprint({{at_x, at_y}, {}, {}}, circle(radius), {});
-            Grid2D<double> shares(17, 17);
-            footprint.add_shares({0, 0, 17, 17}, shares);
+            Grid2D<double> fractions(17, 17);
+            footprint.add_fractions({0, 0, 17, 17}, fractions);
             const double area = std::numbers::pi * radius * radius;
             double sum = 0;
             for (int y = 0; y < 17; ++y)
                 for (int x = 0; x < 17; ++x) {
                     // A count along an edge of up to 1.4 pixels is off by less than a hundredth of
                     // it, mostly by far less.
-                    EXPECT_NEAR(area * shares(x, y), covered(x, y, at_x, at_y, radius), 2e-3)
+                    EXPECT_NEAR(area * fractions(x, y), covered(x, y, at_x, at_y, radius), 2e-3)
                         << radius << " " << x << " " << y;
-                    sum += shares(x, y);
+                    sum += fractions(x, y);
                 }
             EXPECT_NEAR(sum, 1, 1e-9);
         }
@@ -152,15 +152,15 @@ TEST(Footprint, IsAsWideInAllDirections) {
                 for (int i = 0; i < k_places; ++i) {
                     const double at_x = 8 + (i + 0.5) / k_places, at_y = 8 + (j + 0.5) / k_places;
                     const Footprint footprint({{at_x, at_y}, {}, {}}, circle(radius), circle(blur));
-                    Grid2D<double> shares(17, 17);
-                    footprint.add_shares({0, 0, 17, 17}, shares);
+                    Grid2D<double> fractions(17, 17);
+                    footprint.add_fractions({0, 0, 17, 17}, fractions);
                     for (int y = 0; y < 17; ++y)
                         for (int x = 0; x < 17; ++x) {
                             const double u = x + 0.5 - at_x, v = y + 0.5 - at_y;
-                            const double share = shares(x, y) / (k_places * k_places);
-                            xx += share * u * u;
-                            xy += share * u * v;
-                            yy += share * v * v;
+                            const double fraction = fractions(x, y) / (k_places * k_places);
+                            xx += fraction * u * u;
+                            xy += fraction * u * v;
+                            yy += fraction * v * v;
                         }
                 }
             const double expected = (radius * radius + blur * blur) / 4 + 1.0 / 12;
@@ -182,8 +182,8 @@ TEST(Footprint, PartsArePartsOfTheWhole) {
         path.quadratic = {2, 1};
         const Footprint footprint(path, circle(disk), circle(0.5));
         Grid2D<double> whole(40, 40), part(7, 5);
-        footprint.add_shares({0, 0, 40, 40}, whole);
-        footprint.add_shares({15, 14, 22, 19}, part);
+        footprint.add_fractions({0, 0, 40, 40}, whole);
+        footprint.add_fractions({15, 14, 22, 19}, part);
         for (int y = 0; y < 5; ++y)
             for (int x = 0; x < 7; ++x) EXPECT_EQ(part(x, y), whole(15 + x, 14 + y));
     }
@@ -199,10 +199,10 @@ TEST(Footprint, OfALongStreakIsDrawnStepByStep) {
     const PixelWindow around{static_cast<int>(20.3 - aside) - 9, static_cast<int>(17.8 + aside) - 9,
                              static_cast<int>(20.3 - aside) + 9,
                              static_cast<int>(17.8 + aside) + 9};
-    Grid2D<double> shares(around.width(), around.height());
-    footprint.add_shares(around, shares);
+    Grid2D<double> fractions(around.width(), around.height());
+    footprint.add_fractions(around, fractions);
     double sum = 0;
-    for (const double share : shares) sum += share;
+    for (const double fraction : fractions) sum += fraction;
     EXPECT_NEAR(sum * 4096, 1, 1e-9);
 }
 
