@@ -15,10 +15,10 @@ namespace uw {
 
 namespace {
 
-// Below this relative difference expm1(x)/x is 1.
+// Below this x, expm1(x) / x is 1.
 constexpr double k_min_power = 1e-12;
 
-/// int_a^b D^power dD, without cancellation where the power is nearly -1.
+/// Returns int_a^b D^power dD, without cancellation where the power is close to -1.
 double integral_of_power(double power, double a, double b) {
     const double x = (power + 1) * std::log(b / a);
     const double ratio = std::abs(x) < k_min_power ? 1 : std::expm1(x) / x;
@@ -30,7 +30,7 @@ double integral_of_power(double power, double a, double b) {
 JungeSizes::JungeSizes(double exponent, double least, double greatest)
     : exponent_(exponent), least_(least), greatest_(greatest) {}
 
-double JungeSizes::share(double a, double b) const {
+double JungeSizes::fraction(double a, double b) const {
     return integral_of_power(-exponent_, a, b) / integral_of_power(-exponent_, least_, greatest_);
 }
 
@@ -47,11 +47,12 @@ double JungeSizes::mean_area(double a, double b) const {
 
 namespace {
 
-constexpr std::uint64_t k_stream = 0x736e6f77;  // other numbers than for light paths
-// Particles in a cell, on the mean: enough for the cost of a cell to vanish, few enough for cells
-// to fill a view closely.
+constexpr std::uint64_t k_stream = 0x736e6f77;  // differs from the seeds of light paths
+// Mean number of particles in a cell: so many that the cost of a cell itself is negligible, and so
+// few that cells fit a view closely.
 constexpr double k_per_cell = 16;
-// The last octave is never much narrower than the others.
+// Minimum ratio of the diameters of the last octave, which is joined to the one before if it is
+// narrower.
 constexpr double k_min_ratio = 1.01;
 
 }  // namespace
@@ -61,7 +62,7 @@ SnowField::SnowField(const SnowDesc& desc)
     for (double least = desc.least; least < desc.greatest;) {
         double greatest = 2 * least;
         if (greatest * k_min_ratio > desc.greatest) greatest = desc.greatest;
-        const double number = desc.number * sizes_.share(least, greatest);
+        const double number = desc.number * sizes_.fraction(least, greatest);
         classes_.push_back({.least = least,
                             .greatest = greatest,
                             .number = number,
@@ -73,7 +74,7 @@ SnowField::SnowField(const SnowDesc& desc)
 
 void SnowField::append_particles(std::size_t index, const SnowCell& cell, double time,
                                  std::vector<SnowParticle>& particles) const {
-    const SnowClass& kind = classes_[index];
+    const SnowClass& size_class = classes_[index];
     std::uint64_t seed = PathRandom::seed_of(k_stream, seed_, index);
     for (const std::int64_t i : cell)
         seed = PathRandom::seed_of(seed, static_cast<std::uint64_t>(i));
@@ -87,17 +88,18 @@ void SnowField::append_particles(std::size_t index, const SnowCell& cell, double
         for (int axis = 0; axis < 3; ++axis)
             particle.position[axis] =
                 (static_cast<double>(cell[static_cast<std::size_t>(axis)]) + random.next()) *
-                    kind.edge +
+                    size_class.edge +
                 moved[axis];
-        particle.diameter = sizes_.quantile(random.next(), kind.least, kind.greatest);
+        particle.diameter = sizes_.quantile(random.next(), size_class.least, size_class.greatest);
         particle.id = id;
     }
 }
 
 namespace {
 
-/// Lets the uniform water scatter `b` more, as diffuse spheres do, while its attenuation stays.
-/// What is added and taken away again leaves nothing: both are of one phase function.
+/// Increases the scattering of the uniform water by `b`, with the phase function of diffuse
+/// spheres, at constant attenuation. What is added and then subtracted leaves nothing, as both have
+/// the same phase function.
 void scatter_more(const Spectrum& b, Medium& medium) {
     auto& phases = medium.phase_functions;
     const auto known = std::ranges::find_if(phases, [](const auto& phase) {
@@ -114,7 +116,7 @@ void scatter_more(const Spectrum& b, Medium& medium) {
     medium.uniform.absorption -= b;
 }
 
-/// Lets `x` absorb what it scattered.
+/// Turns the scattering of `x` into absorption.
 void stop_scattering(OpticalCoefficients& x) {
     x.absorption = x.attenuation();
     for (Spectrum& b : x.scattering) b = {};
@@ -122,7 +124,7 @@ void stop_scattering(OpticalCoefficients& x) {
 
 void check_rest(const SnowDesc& snow, const Medium& water, const Spectrum& b) {
     constexpr int k_steps = 360;
-    // What is added to the coefficients and taken away again leaves rounding behind.
+    // Tolerance for rounding, as the coefficients may have been added and subtracted.
     constexpr double k_rounding = 1e-9;
     for (int i = 0; i <= k_steps; ++i) {
         const double psi = std::numbers::pi * i / k_steps;
@@ -217,9 +219,9 @@ void BeyondSnow::add_beyond(const Ray& ray, double begin, std::span<const double
             for (const Part& part : parts_) {
                 if (part.range >= distances[i]) continue;
                 Spectrum beyond = up_to(distances[i], lamp) - up_to(part.range, lamp);
-                // With few slabs, the light of a part may be more than that of the whole.
+                // With few slabs, the light up to the range may exceed that up to the distance.
                 for (double& radiance : beyond.values) radiance = std::max(radiance, 0.0);
-                result.at(i, lamp) += part.share * beyond;
+                result.at(i, lamp) += part.fraction * beyond;
             }
 }
 
@@ -232,7 +234,7 @@ double SnowModel::drawn_depth(double distance) const {
 
 std::vector<BeyondSnow::Part> SnowModel::parts() const {
     double all = 0;
-    for (const SnowClass& kind : field.classes()) all += kind.attenuation();
+    for (const SnowClass& size_class : field.classes()) all += size_class.attenuation();
     std::vector<BeyondSnow::Part> parts;
     for (std::size_t k = 0; k < ranges.size(); ++k)
         parts.push_back({ranges[k], field.classes()[k].attenuation() / all});

@@ -18,22 +18,23 @@
 namespace uw {
 
 /// Junge's hyperbolic size distribution: the number of particles with diameters from D to D + dD is
-/// proportional to D^-exponent dD between a least and a greatest diameter (Junge 1963; Bader 1970;
-/// of particles in the sea, exponents of 3 to 5). Diameters are those of spheres [m]. In all
-/// functions least <= a < b <= greatest.
+/// proportional to D^-exponent dD between a least and a greatest diameter (Junge 1963; Bader 1970).
+/// In the sea, exponents are 3 to 5. Diameters are those of spheres [m]. All functions require
+/// least <= a < b <= greatest.
 class JungeSizes {
   public:
-    /// 0 < least < greatest.
+    /// Precondition: 0 < least < greatest.
     JungeSizes(double exponent, double least, double greatest);
 
     double least() const { return least_; }
     double greatest() const { return greatest_; }
 
-    /// The share of all particles, by number, with diameters from `a` to `b`.
-    double share(double a, double b) const;
-    /// The diameter below which a share `u` of those from `a` to `b` is, 0 <= u <= 1.
+    /// Returns the fraction of all particles, by number, with diameters from `a` to `b`.
+    double fraction(double a, double b) const;
+    /// Returns the diameter below which a fraction `u` of the particles from `a` to `b` lies, 0 <=
+    /// u <= 1.
     double quantile(double u, double a, double b) const;
-    /// The mean cross section, pi D^2 / 4, of those from `a` to `b` [m^2].
+    /// Returns the mean cross section, pi D^2 / 4, of the particles from `a` to `b` [m^2].
     double mean_area(double a, double b) const;
 
   private:
@@ -42,10 +43,10 @@ class JungeSizes {
 
 /// One particle of snow.
 struct SnowParticle {
-    Point3 position;      // world, at the time asked for
+    Point3 position;      // in world space, at the requested time
     double diameter = 0;  // [m]
-    std::uint64_t id =
-        0;  // the same at all times; different for different particles, almost surely
+    /// The same at all times; different for different particles, almost surely.
+    std::uint64_t id = 0;
 };
 
 /// Particles whose diameters lie within a factor of two.
@@ -53,25 +54,26 @@ struct SnowClass {
     double least = 0, greatest = 0;  // diameters [m]
     double number = 0;               // per m^3
     double mean_area = 0;            // cross section [m^2]
-    double edge = 0;                 // of the cells that they are placed in [m]
+    double edge = 0;                 // edge length of the cells in which they are placed [m]
 
-    /// The share of light that they take away per metre: all that meets their cross section.
+    /// The attenuation coefficient of the particles [1/m]: they attenuate all light that meets
+    /// their cross section.
     double attenuation() const { return number * mean_area; }
 };
 
-/// The cell of a class with these indices: particles' positions at time 0 are from index * edge to
+/// The indices of a cell of a class: positions of its particles at time 0 are from index * edge to
 /// (index + 1) * edge along each axis.
 using SnowCell = std::array<std::int64_t, 3>;
 
-/// All the snow of an unbounded ocean. Nothing of it is stored: the particles of a cell, their
-/// number (Poisson's), places (uniform) and diameters (Junge's) follow from the seed and the cell
-/// alone, and all drift together, so that they are the same for every camera and frame.
+/// The snow of an unbounded ocean. No particles are stored: those of a cell, their number (a
+/// Poisson distribution), positions (uniform) and diameters (JungeSizes), follow from the seed and
+/// the cell alone, and all drift together, so that they are the same for every camera and frame.
 class SnowField {
   public:
     explicit SnowField(const SnowDesc& desc);
 
     const std::vector<SnowClass>& classes() const { return classes_; }
-    /// How far all particles have moved since time 0 [m].
+    /// The displacement of all particles since time 0 [m].
     Vector3 displacement(double time) const { return time * drift_; }
 
     /// Appends the particles of a cell of class `index` at a time [s].
@@ -85,8 +87,8 @@ class SnowField {
     std::uint64_t seed_;
 };
 
-/// The light that a white sphere with a diffuse surface scatters, as for the moon's phases: p =
-/// 2/(3 pi^2) (sin psi - psi cos psi) (Lambert 1760; Schönberg 1929).
+/// The phase function of a large white sphere with a diffuse surface: p = 2/(3 pi^2) (sin psi - psi
+/// cos psi) (Lambert 1760; Schönberg 1929).
 class LambertSphere final : public PhaseFunction {
   public:
     using PhaseFunction::evaluate;
@@ -101,37 +103,38 @@ class LambertSphere final : public PhaseFunction {
     }
 };
 
-/// The snow's own coefficients, as a mean over many particles: `attenuation` is their cross section
-/// per volume [1/m], of which they scatter their reflectance as diffuse spheres do (LambertSphere).
+/// The coefficients of snow, as means over many particles: `attenuation` is their cross section per
+/// volume [1/m], and `scattering` that times their reflectance. Their phase function is that of
+/// LambertSphere.
 struct SnowCoefficients {
     double attenuation = 0;
     Spectrum scattering{};
 };
 SnowCoefficients snow_coefficients(const SnowDesc& snow);
 
-/// Adds the snow's coefficients to the uniform water of `medium`.
+/// Adds the coefficients of snow to the uniform water of `medium`.
 void add_snow(const SnowDesc& snow, Medium& medium);
 
-/// `medium`, whose coefficients hold the snow, without the light that the snow scatters: with the
-/// same attenuation. Throws InputError if it scatters more, in some direction and band, than the
-/// uniform water does.
+/// Returns `medium`, whose coefficients contain the snow, without scattering by the snow, but with
+/// the same attenuation. Throws InputError if snow scatters more, in some direction and band, than
+/// the uniform water.
 Medium without_snow(const SnowDesc& snow, const Medium& medium);
 
-/// `medium`, whose coefficients hold the snow, but scattering only the light that the snow does:
+/// Returns `medium`, whose coefficients contain the snow, with scattering by the snow alone, but
 /// with the same attenuation.
 Medium snow_alone(const SnowDesc& snow, const Medium& medium);
 
-/// Particles up to a distance are drawn one by one; those beyond are as many as their mean, which
-/// this adds to the in-scatter of the water without snow.
+/// Adds the mean in-scattering by particles beyond the distance up to which they are drawn one by
+/// one to that of the water without snow.
 class BeyondSnow final : public Integrator {
   public:
-    /// A class of particles: drawn up to the distance `range` [m], with this share of the light
-    /// that all snow scatters.
+    /// A class of particles: it is drawn up to the distance `range` [m], and scatters this fraction
+    /// of the light that all snow scatters.
     struct Part {
-        double range = 0, share = 0;
+        double range = 0, fraction = 0;
     };
 
-    /// `water`: of the water without snow; `snow`: of snow alone (core/passes/marine_snow.h).
+    /// `water` integrates without_snow, and `snow` integrates snow_alone.
     BeyondSnow(std::unique_ptr<const Integrator> water, std::unique_ptr<const Integrator> snow,
                std::vector<Part> parts);
 
@@ -148,21 +151,21 @@ class BeyondSnow final : public Integrator {
     std::vector<Part> parts_;  // by ascending range
 };
 
-/// The snow of a scene as one of its cameras sees it (docs/snow.md).
+/// The snow of a scene for one of its cameras (docs/snow.md).
 struct SnowModel {
     SnowField field;
-    /// How far the particles of each class are drawn, along rays in water [m]; those beyond are as
-    /// many as their mean.
+    /// The distances along rays in water up to which particles of each class are drawn [m]; those
+    /// beyond are represented by their mean.
     std::vector<double> ranges{};
-    double expected_count = 0;  // of particles drawn, in the view
-    Medium water;               // without the light that snow scatters
-    Medium alone;               // that light alone
+    double expected_count = 0;  // of drawn particles in the view
+    Medium water;               // without scattering by snow
+    Medium alone;               // with scattering by snow alone
     std::optional<std::string> warning{};
 
-    /// The optical depth of the particles drawn, as a mean over many, up to a distance [m]: the
-    /// water's coefficients hold it, and so do the particles.
+    /// Returns the mean optical depth of the drawn particles up to a distance [m]. The water's
+    /// coefficients include it, although the drawn particles attenuate light, too.
     double drawn_depth(double distance) const;
-    /// For what lies beyond the ranges.
+    /// The parts of BeyondSnow.
     std::vector<BeyondSnow::Part> parts() const;
 };
 

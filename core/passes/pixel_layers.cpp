@@ -20,14 +20,14 @@ void store_vector(double x, double y, double z, std::span<float> channels) {
     channels[2] = static_cast<float>(z);
 }
 
-/// Values as they are, one per band.
+/// Stores values without a factor, one per band.
 template <Spectrum PixelResult::*values>
 void fill_spectrum(const PixelResult& pixel, std::span<float> channels) {
     for (std::size_t b = 0; b < channels.size(); ++b)
         channels[b] = static_cast<float>((pixel.*values)[b]);
 }
 
-/// Radiance, which images hold multiplied by the pixel's factor.
+/// Stores radiance, which images contain multiplied by the pixel's factor.
 template <Spectrum PixelResult::*values>
 void fill_radiance(const PixelResult& pixel, std::span<float> channels) {
     for (std::size_t b = 0; b < channels.size(); ++b)
@@ -44,7 +44,8 @@ void fill_pair(const PixelResult& pixel, std::span<float> channels) {
     for (std::size_t i = 0; i < 2; ++i) channels[i] = static_cast<float>((pixel.*values)[i]);
 }
 
-/// The sum of `multiple_volume` and `multiple_surface`, each rounded to float before the addition.
+/// Stores the sum of `multiple_volume` and `multiple_surface`, each rounded to float before the
+/// addition.
 void fill_multiple(const PixelResult& pixel, std::span<float> channels) {
     const double factor = pixel.pixel_factor;
     for (std::size_t b = 0; b < channels.size(); ++b)
@@ -52,9 +53,9 @@ void fill_multiple(const PixelResult& pixel, std::span<float> channels) {
                       static_cast<float>(factor * pixel.multiple_surface[b]);
 }
 
-/// The sum of direct, forward, backscatter, `multiple` and snow, in this order, each rounded to
-/// float before the addition, so that in the image they add up to the total to the bit; 0 where
-/// snow hides all of them and rounding leaves less.
+/// Stores the sum of direct, forward, backscatter, `multiple` and snow, in this order, each rounded
+/// to float before the addition, so that in the image they sum to the total to the bit. The sum is
+/// clamped to 0, as rounding may make it negative where snow hides all other light.
 void fill_total(const PixelResult& pixel, std::span<float> channels) {
     const double factor = pixel.pixel_factor;
     fill_multiple(pixel, channels);
@@ -92,12 +93,13 @@ template <float PixelResult::SeenSurface::*id>
 void fill_mattes(const PixelResult& pixel, std::span<float> channels) {
     thread_local std::vector<Matte> mattes;
     mattes.clear();
-    for (const PixelResult::SeenSurface& seen : pixel.seen) add_matte(seen.*id, seen.share, mattes);
+    for (const PixelResult::SeenSurface& surface : pixel.visible_surfaces)
+        add_matte(surface.*id, surface.fraction, mattes);
     store_mattes(mattes, channels);
 }
 
-/// Leaves the channels alone: they are filled once the whole image is there (SensorPass).
-void leave(const PixelResult&, std::span<float>) {}
+/// Leaves the channels unchanged: SensorPass fills them when the whole image is complete.
+void keep(const PixelResult&, std::span<float>) {}
 
 /// How a layer is filled from a pixel.
 struct LayerFill {
@@ -105,7 +107,7 @@ struct LayerFill {
     void (*fill)(const PixelResult& pixel, std::span<float> channels);
 };
 
-/// Omitting a layer is a compile-time error.
+/// The fills of all layers; omitting a layer is a compile-time error.
 constexpr std::array<LayerFill, k_layer_count> k_fills{{
     {Layer::total, fill_total},
     {Layer::direct, fill_radiance<&PixelResult::direct>},
@@ -132,7 +134,7 @@ constexpr std::array<LayerFill, k_layer_count> k_fills{{
     {Layer::material, fill_material},
     {Layer::crypto_object, fill_mattes<&PixelResult::SeenSurface::object>},
     {Layer::crypto_material, fill_mattes<&PixelResult::SeenSurface::material>},
-    {Layer::sensor, leave},
+    {Layer::sensor, keep},
     {Layer::flow, fill_pair<&PixelResult::flow>},
     {Layer::flow_back, fill_pair<&PixelResult::flow_back>},
     {Layer::flow_occluded, fill_number<&PixelResult::flow_occluded>},
@@ -182,8 +184,8 @@ void store_layer(const LayerFill& line, const PixelResult& pixel, const LayerPla
         line.fill(pixel, own);
 }
 
-/// Makes sums of layers, as far as the image holds all of their terms, sums to the bit, in the
-/// order of fill_total: after the terms were averaged and rounded.
+/// Recomputes the sums of layers whose terms the image contains, in the order of fill_total, after
+/// the terms were averaged and rounded: so they are exact to the bit.
 void restore_sums(const LayerPlan& plan, const BandColour& colour, std::span<float> channels) {
     const bool has_forward = plan.is_provided(Layer::forward);
     const bool has_snow = plan.is_provided(Layer::snow);
@@ -225,7 +227,7 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
     flow = flow_back = disparity = {k_none, k_none};
     flow_occluded = disparity_occluded = k_none;
-    // Bands are few: band by band is faster than spectrum by spectrum.
+    // There are few bands, so that clearing band by band is faster than spectrum by spectrum.
     for (std::size_t b = 0; b < bands; ++b)
         for (Spectrum* const values :
              {&direct, &lamps_in_view, &forward, &backscatter, &backscatter_first, &multiple_volume,
@@ -234,7 +236,7 @@ void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     lamps.assign(lamp_count, Spectrum{});
     orders.clear();
     reflections.clear();
-    seen.clear();
+    visible_surfaces.clear();
 }
 
 void PixelResult::dim(const Spectrum& factor) {
@@ -320,7 +322,7 @@ void add_forward_scatter_of_lamp(const PixelResult& pixel, const LayerPlan& plan
 
 void take_bands(const Film& from, std::span<const std::size_t> bands, const LayerPlan& plan,
                 Film& film) {
-    // Where the light of band 0 is, of every layer that has one channel per band.
+    // The channel of band 0 of every layer that has one channel per band.
     std::vector<std::size_t> firsts;
     std::vector<float> pixel(film.channel_names().size());
     const auto add = [&](std::span<const float> own) {
@@ -353,7 +355,7 @@ void take_bands(const Film& from, std::span<const std::size_t> bands, const Laye
 
 void add_mirrored(const Film& mirrored, const LayerPlan& plan, const BandColour& colour,
                   Film& film) {
-    // Channels of light: all but those of layers that are something else.
+    // The channels of light: all but coverage and those of layers with other content.
     std::vector<std::size_t> channels;
     std::vector<bool> is_light(film.channel_names().size(), true);
     is_light[k_alpha] = false;
@@ -387,7 +389,8 @@ void add_mirrored(const Film& mirrored, const LayerPlan& plan, const BandColour&
 ExposureMean::ExposureMean(const LayerPlan& plan, const BandColour& colour, Errors errors,
                            Film& mean)
     : plan_(plan), colour_(colour), errors_(errors), mean_(mean) {
-    // Lamps and orders follow the layers: all channels but those of other kinds are means.
+    // Lamps and orders follow the layers: all channels are means, except those of the following
+    // layers.
     std::vector<bool> is_mean(mean.channel_names().size(), true);
     std::vector<float> place(is_mean.size());
     for (const LayerKind& kind : k_layers) {
@@ -400,19 +403,19 @@ ExposureMean::ExposureMean(const LayerPlan& plan, const BandColour& colour, Erro
     }
     for (std::size_t channel = 0; channel < is_mean.size(); ++channel)
         if (is_mean[channel]) channels_.push_back(channel);
-    shares_.assign(static_cast<std::size_t>(mean.window().height()), 0.0F);
+    fractions_.assign(static_cast<std::size_t>(mean.window().height()), 0.0F);
     if (plan.has(Layer::transmittance))
         on_surface_.assign(mean.window().width(), mean.window().height());
 }
 
-void ExposureMean::add(const Film& part, const RowShare& share) {
+void ExposureMean::add(const Film& part, const RowFraction& fraction) {
     const PixelWindow& window = part.window();
     const int x0 = mean_.window().x0, y0 = mean_.window().y0;
     parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
         const int y = window.y0 + static_cast<int>(line);
-        const auto weight = static_cast<float>(share(y));
+        const auto weight = static_cast<float>(fraction(y));
         if (weight == 0) return;
-        float& so_far = shares_[static_cast<std::size_t>(y - y0)];
+        float& so_far = fractions_[static_cast<std::size_t>(y - y0)];
         so_far += weight;
         for (int x = window.x0; x < window.x1; ++x) {
             if (part.shows_lamp(x, y)) mean_.mark_lamp(x, y);
@@ -424,10 +427,11 @@ void ExposureMean::add(const Film& part, const RowShare& share) {
     });
 }
 
-// What all parts have alike stays as it is, to the bit.
-void ExposureMean::add_pixel(std::span<const float> part, float share, float share_so_far,
+// The mean is updated incrementally, so that a value that is equal in all parts stays the same to
+// the bit.
+void ExposureMean::add_pixel(std::span<const float> part, float fraction, float fraction_so_far,
                              std::span<float> mean) const {
-    const float weight = share / share_so_far;
+    const float weight = fraction / fraction_so_far;
     for (const std::size_t channel : channels_)
         mean[channel] += weight * (part[channel] - mean[channel]);
     for (const Layer matte : {Layer::crypto_object, Layer::crypto_material}) {
@@ -439,19 +443,19 @@ void ExposureMean::add_pixel(std::span<const float> part, float share, float sha
     if (!plan_.has(Layer::error)) return;
     const auto first = static_cast<std::size_t>(plan_.first_channel(Layer::error));
     for (std::size_t b = 0; b < plan_.band_count(); ++b) {
-        const float error = share * part[first + b];
+        const float error = fraction * part[first + b];
         mean[first + b] += errors_ == Errors::independent ? error * error : error;
     }
 }
 
-void ExposureMean::add_transmittance(std::span<const float> part, float share,
+void ExposureMean::add_transmittance(std::span<const float> part, float fraction,
                                      std::span<float> mean, float& on_surface) const {
     const auto first = static_cast<std::size_t>(plan_.first_channel(Layer::transmittance));
-    const std::span<const float> seen = part.subspan(first, plan_.band_count());
-    if (std::ranges::none_of(seen, [](float value) { return value > 0; })) return;
-    on_surface += share;
-    for (std::size_t b = 0; b < seen.size(); ++b)
-        mean[first + b] += share / on_surface * (seen[b] - mean[first + b]);
+    const std::span<const float> transmittance = part.subspan(first, plan_.band_count());
+    if (std::ranges::none_of(transmittance, [](float value) { return value > 0; })) return;
+    on_surface += fraction;
+    for (std::size_t b = 0; b < transmittance.size(); ++b)
+        mean[first + b] += fraction / on_surface * (transmittance[b] - mean[first + b]);
 }
 
 void ExposureMean::finish() {

@@ -430,9 +430,9 @@ void PixelRenderer::add_mattes(const PixelView& view, PixelResult& result) const
         return number < ids.size() ? ids[number] : 0.0F;
     };
     for (const SurfaceSample& sample : view.samples)
-        result.seen.push_back({id_of(object_mattes_, sample.hit.object_id),
-                               id_of(material_mattes_, sample.hit.material_id),
-                               1.0 / samples_.count});
+        result.visible_surfaces.push_back({id_of(object_mattes_, sample.hit.object_id),
+                                           id_of(material_mattes_, sample.hit.material_id),
+                                           1.0 / samples_.count});
 }
 
 void PixelRenderer::add_lamp(const SeenLamp& lamp, PixelResult& result) const {

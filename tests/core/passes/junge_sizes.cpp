@@ -26,7 +26,7 @@ TEST(JungeSizes, SharesAndAreasAreThoseOfThePowerLaw) {
     for (const double exponent : {0.0, 1.0, 2.5, 3.0, 4.0}) {
         const JungeSizes sizes(exponent, k_least, k_greatest);
         const double a = 2e-4, b = 3e-3;
-        EXPECT_NEAR(sizes.share(a, b) * integral(-exponent, k_least, k_greatest) /
+        EXPECT_NEAR(sizes.fraction(a, b) * integral(-exponent, k_least, k_greatest) /
                         integral(-exponent, a, b),
                     1, 1e-6)
             << exponent;
@@ -45,7 +45,7 @@ TEST(JungeSizes, QuantilesInvertTheShare) {
         EXPECT_NEAR(sizes.quantile(1, a, b), b, 1e-12 * b);
         for (const double u : {0.1, 0.5, 0.93}) {
             const double diameter = sizes.quantile(u, a, b);
-            EXPECT_NEAR(sizes.share(a, diameter) / sizes.share(a, b), u, 1e-9) << exponent;
+            EXPECT_NEAR(sizes.fraction(a, diameter) / sizes.fraction(a, b), u, 1e-9) << exponent;
         }
     }
 }
@@ -53,7 +53,7 @@ TEST(JungeSizes, QuantilesInvertTheShare) {
 /// The number above a diameter falls as its power 1 - exponent, far below the greatest.
 TEST(JungeSizes, CumulativeNumbersAreHyperbolic) {
     const JungeSizes sizes(4, 1e-6, 1);
-    EXPECT_NEAR(sizes.share(1e-4, 1) / sizes.share(1e-5, 1), 1e-3, 1e-9);
+    EXPECT_NEAR(sizes.fraction(1e-4, 1) / sizes.fraction(1e-5, 1), 1e-3, 1e-9);
 }
 
 }  // namespace
