@@ -149,9 +149,9 @@ namespace {
 Json left_out_json(const SceneDesc& first, std::span<const LightLeftOut> left_out) {
     // The paper's image has no other light.
     if (left_out.empty() || first.render.output == RenderDesc::Output::paper) return nullptr;
-    const auto [least, most] = std::ranges::minmax(left_out, {}, &LightLeftOut::share);
-    return {{"least", least.share},
-            {"most", most.share},
+    const auto [least, most] = std::ranges::minmax(left_out, {}, &LightLeftOut::fraction);
+    return {{"least", least.fraction},
+            {"most", most.fraction},
             {"views", left_out.size()},
             {"all_light", settings_of_all_light(first)}};
 }

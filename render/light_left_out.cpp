@@ -20,19 +20,19 @@ namespace uw {
 
 namespace {
 
-// Guides need to be no better for so few paths.
+// For so few paths, guiding distributions need not be finer.
 constexpr LampRadianceTable::Fineness k_guides{.orders = 8, .is_coarse = true};
 
-// The work of a vertex of a path is about that of six camera rays that single scattering is
-// rendered from: this is a tenth of the image's.
+// A path vertex takes about the work of six camera rays of single scattering, so that this is a
+// tenth of the work of the image.
 constexpr double k_vertices_per_ray = 1.0 / 64;
-constexpr double k_fewest_vertices = 2000, k_max_vertices = 20'000;
+constexpr double k_min_vertices = 2000, k_max_vertices = 20'000;
 constexpr std::size_t k_max_places = 1152;
-constexpr std::size_t k_places_at_once = 4;  // between two looks at the work done
-constexpr double k_vertices_of_place = 2;    // the work there besides that of its paths
+constexpr std::size_t k_places_at_once = 4;  // traced before the work done is checked again
+constexpr double k_vertices_of_place = 2;    // work of a place, apart from its paths
 
-/// Points in the unit square, any number of which fill it evenly (Roberts 2018, "The unreasonable
-/// effectiveness of quasirandom sequences").
+/// Returns a point of a low-discrepancy sequence in the unit square (Roberts 2018, "The
+/// unreasonable effectiveness of quasirandom sequences").
 std::pair<double, double> even_place(std::size_t number) {
     double whole = 0;
     const auto n = static_cast<double>(number);
@@ -43,35 +43,36 @@ std::pair<double, double> even_place(std::size_t number) {
 double max_work(const PixelRenderer& pixels) {
     const RaySource& rays = pixels.rays();
     return std::clamp(k_vertices_per_ray * rays.width() * rays.height() * pixels.samples(),
-                      k_fewest_vertices, k_max_vertices);
+                      k_min_vertices, k_max_vertices);
 }
 
-/// Light per place of the image: emitted, scattered or reflected no more than once, and all other.
+/// The light at a place of the image: emitted, or scattered or reflected only once, and all other.
 struct Light {
-    double once = 0, more = 0;
+    double single = 0, multiple = 0;
 };
 
-/// Sums over places, and of squares and products.
+/// Sums over places of light, and of its squares and products.
 class Sums {
   public:
     void add(const Light& light) {
         ++count_;
-        const double all = light.once + light.more;
-        all_ += all, more_ += light.more;
-        of_all_ += all * all, of_more_ += light.more * light.more, of_both_ += all * light.more;
+        const double all = light.single + light.multiple;
+        all_ += all, multiple_ += light.multiple;
+        of_all_ += all * all, of_multiple_ += light.multiple * light.multiple,
+            of_both_ += all * light.multiple;
     }
 
-    /// The ratio of two means, and the standard error of it (Cochran 1977, eq. 2.46).
-    std::optional<LightLeftOut> share() const {
+    /// Returns the ratio of two means and its standard error (Cochran 1977, eq. 2.46).
+    std::optional<LightLeftOut> ratio() const {
         if (!(all_ > 0)) return std::nullopt;
-        const double ratio = more_ / all_;
+        const double ratio = multiple_ / all_;
         const double squares =
-            std::max(0.0, of_more_ - 2 * ratio * of_both_ + ratio * ratio * of_all_);
+            std::max(0.0, of_multiple_ - 2 * ratio * of_both_ + ratio * ratio * of_all_);
         return LightLeftOut{ratio, std::sqrt(count_ / std::max(1.0, count_ - 1) * squares) / all_};
     }
 
   private:
-    double count_ = 0, all_ = 0, more_ = 0, of_all_ = 0, of_more_ = 0, of_both_ = 0;
+    double count_ = 0, all_ = 0, multiple_ = 0, of_all_ = 0, of_multiple_ = 0, of_both_ = 0;
 };
 
 }  // namespace
@@ -83,11 +84,12 @@ std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene)
     const PixelRenderer pixels = pixel_renderer(scene, transport);
     const PathPixels paths(pixels, 0);
     const RaySource& rays = pixels.rays();
-    const double enough = max_work(pixels);
+    const double max_work_of_image = max_work(pixels);
     Sums sums;
     double work = 0;
-    // As the work of a path is the same in every run, so is the number of places.
-    for (std::size_t first = 0; first < k_max_places && work < enough; first += k_places_at_once) {
+    // The work of a path is the same in every run, and so is the number of places.
+    for (std::size_t first = 0; first < k_max_places && work < max_work_of_image;
+         first += k_places_at_once) {
         std::array<PathTrial, k_places_at_once> trials;
         parallel_for(trials.size(), [&](std::size_t i) {
             const auto [x, y] = even_place(first + i);
@@ -97,13 +99,13 @@ std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene)
             Light light{trial.single, 0};
             work += k_vertices_of_place;
             for (const PathTrial::OfKind& kind : trial.kinds) {
-                light.more += kind.mean;
+                light.multiple += kind.mean;
                 work += kind.work;
             }
             sums.add(light);
         }
     }
-    return sums.share();
+    return sums.ratio();
 }
 
 std::string settings_of_all_light(const SceneDesc& scene) {
@@ -118,12 +120,12 @@ std::optional<std::string> left_out_note(const AssembledScene& scene,
                                          const std::optional<LightLeftOut>& left_out) {
     if (!left_out || !left_out->matters()) return std::nullopt;
     const SceneDesc& desc = scene.desc();
-    // The paper's image has no other.
+    // The paper's image has no other light.
     if (desc.render.output == RenderDesc::Output::paper) return std::nullopt;
     return fmt::format(
         "single scattering leaves out about {:.0f} % of this image's light, which is scattered or "
         "reflected more than once; {} renders it",
-        100 * left_out->share, settings_of_all_light(desc));
+        100 * left_out->fraction, settings_of_all_light(desc));
 }
 
 }  // namespace uw

@@ -8,25 +8,25 @@
 
 namespace uw {
 
-/// The share of all light that an image of single scattering leaves out, as means over the image
-/// and the bands, and the share's standard error.
+/// The fraction of all light that an image of single scattering leaves out, as means over the image
+/// and the bands, and its standard error.
 struct LightLeftOut {
-    double share = 0, error = 0;
+    double fraction = 0, error = 0;
 
-    /// Whether it is more than an image of single scattering may leave out without a word.
-    bool matters() const { return share > 0.05; }
+    /// Whether it is so much that an image of single scattering should come with a note.
+    bool matters() const { return fraction > 0.05; }
 };
 
-/// Estimates it by a few light paths all over the image, which are about a tenth of the work that
-/// the image is, and at most some thousand vertices: the same in every run. None for a scene that
-/// is rendered with all light, or without any.
+/// Estimates that fraction by a few light paths all over the image. They take about a tenth of the
+/// work of the image, at most some thousand vertices, and are the same in every run. None for a
+/// scene that is rendered with multiple scattering, or that has no light.
 std::optional<LightLeftOut> estimate_light_left_out(const AssembledScene& scene);
 
-/// What of a scene that is rendered with single scattering is to be set so that it is rendered with
-/// all light: "render.scattering: multiple".
+/// Returns the settings with which a scene is rendered with multiple scattering:
+/// "render.scattering: multiple" and what else it needs.
 std::string settings_of_all_light(const SceneDesc& scene);
 
-/// One line that says so, and how to render it, where it matters.
+/// Returns a note, one line, of how much is left out and how to render it, if it matters.
 std::optional<std::string> left_out_note(const AssembledScene& scene,
                                          const std::optional<LightLeftOut>& left_out);
 

@@ -19,10 +19,10 @@ namespace uw {
 
 namespace {
 
-constexpr std::size_t k_times_as_many = 4;          // as many points for comparison
-constexpr std::size_t k_max_points = 1024;          // as `samples` may be
+constexpr std::size_t k_times_as_many = 4;  // factor on the number of points, for comparison
+constexpr std::size_t k_max_points = 1024;  // the maximum of `samples`
 constexpr int k_rays_across = 12, k_rays_down = 9;  // rays over the image
-constexpr int k_places = 6;  // on each, at equal steps of what the water takes away
+constexpr int k_places = 6;  // on each ray, at equal steps of 1 - transmittance
 
 bool is_pointed(const LampDesc& lamp) {
     return lamp.sky || lamp.emissive_volume;
@@ -34,7 +34,7 @@ std::size_t count_of(const AssembledScene& scene, std::size_t lamp) {
     }));
 }
 
-/// The emitters of the pointed lamps, with `times` as many of each.
+/// Returns the emitters of the pointed lamps, `times` as many of each.
 std::vector<Lamp> pointed_emitters(const AssembledScene& scene, std::size_t times) {
     std::vector<Lamp> emitters;
     auto emissive = scene.emissions.begin();
@@ -59,8 +59,8 @@ std::vector<Lamp> pointed_emitters(const AssembledScene& scene, std::size_t time
     return emitters;
 }
 
-/// The light of emitters along rays, by lamp: what surfaces reflect of it, and what the water
-/// scatters once, at a few places.
+/// Computes the light of emitters along rays, by lamp: direct light on surfaces, and single
+/// scattering by a quadrature with a few nodes.
 class PointLight {
   public:
     PointLight(const AssembledScene& scene, std::vector<Lamp> emitters)
@@ -71,7 +71,7 @@ class PointLight {
           phases_(*scene_.medium),
           surfaces_(scene_) {}
 
-    /// The mean over the bands by lamp, at the ray's origin.
+    /// Returns the radiance at the ray's origin by lamp, as mean over the bands.
     std::vector<double> along(const Ray& ray) const {
         std::vector<double> light(lamps_, 0.0);
         WaterSegment segment;
@@ -109,21 +109,21 @@ class PointLight {
         }
     }
 
-    // What is left of the band at the end of the segment is `left`.
+    // `left` is the transmittance of the whole segment in this band.
     void add_water(const WaterSegment& segment, std::size_t band, double left,
                    std::vector<double>& light) const {
         WaterPoint point;
         std::vector<double> c(optics_.bands()), column(optics_.constituents());
         std::vector<double> p(scene_.medium->phase_functions.size());
         for (int k = 0; k < k_places; ++k) {
-            const double share = (k + 0.5) / k_places * (1 - left);
-            const double s = optics_.distance_at_depth(segment, band, -std::log1p(-share));
+            const double fraction = (k + 0.5) / k_places * (1 - left);
+            const double s = optics_.distance_at_depth(segment, band, -std::log1p(-fraction));
             if (!(s < segment.length)) continue;
             optics_.look_up(segment, s, point);
             optics_.find_scattering(point);
             optics_.attenuations(point, c);
             if (!(c[band] > 0)) continue;
-            // Places have the density c e^-tau / (1 - left).
+            // The nodes have the pdf c e^-tau / (1 - left).
             const double weight =
                 (1 - left) / (k_places * c[band] * static_cast<double>(optics_.bands()));
             const Point3 x = segment.ray.at(s);
@@ -183,13 +183,13 @@ std::vector<PointedLamp> find_pointed_lamps(const AssembledScene& scene) {
         for (const double of_lamp : all.along(*ray)) light.all += of_lamp;
         light.few = few.along(*ray);
         light.many = many.along(*ray);
-        // What the camera sees of them is exact.
+        // The lamps that the camera sees directly are exact.
         SurfaceHit hit;
         const bool has_hit = scene.surfaces->closest_hit(*ray, k_far, hit);
-        std::vector<SeenLamp> seen;
-        in_view.append(*ray, has_hit ? hit.distance : k_far, seen);
+        std::vector<SeenLamp> visible_lamps;
+        in_view.append(*ray, has_hit ? hit.distance : k_far, visible_lamps);
         Spectrum direct{};
-        for (const SeenLamp& lamp : seen) direct += lamp.arriving;
+        for (const SeenLamp& lamp : visible_lamps) direct += lamp.arriving;
         if (has_hit && hit.has_material) {
             std::vector<double> column(attenuation.constituents.size());
             scene.field->column(ray->origin, hit.position, column);
@@ -222,7 +222,7 @@ std::vector<std::string> pointed_lamp_notes(const AssembledScene& scene,
         const LampDesc& desc = scene.desc().lamps[lamp.lamp];
         const bool is_sky = desc.sky != nullptr;
         const std::size_t more = std::min(k_times_as_many * lamp.count, k_max_points);
-        // Of which drafts have a part.
+        // The scene's number of samples, of which drafts use a part.
         const auto samples = static_cast<std::size_t>(
             is_sky ? desc.sky->samples : desc.emissive_volume->emission.samples);
         notes.push_back(fmt::format(

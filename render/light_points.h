@@ -8,25 +8,25 @@
 
 namespace uw {
 
-/// A lamp that stands for light from all over the sky, or from all over a volume, as so many
-/// directions or points, and what that leaves out.
+/// A lamp that represents the light of the sky or of an emissive volume by a number of directions
+/// or points, and the error of that.
 struct PointedLamp {
-    std::size_t lamp = 0;   // its index
+    std::size_t lamp = 0;   // index of the lamp
     std::size_t count = 0;  // of directions or points
-    /// By how much its light in the image changes with four times as many: RMS over the image,
-    /// relative to the mean of all light in it, of single scattering and direct light, without what
-    /// the water's surface mirrors. What more of them than that would change comes on top.
+    /// The change of its light in the image with four times as many: RMS over the image, relative
+    /// to the mean of all light. It includes direct light and single scattering, but not what the
+    /// water's surface mirrors. Still more points may change the image further.
     double change = 0;
 
-    /// Whether that is more than an image may leave out without a word.
+    /// Whether the change is so large that the image should come with a note.
     bool matters() const { return change > 0.03; }
 };
 
-/// Finds it for the sky and each volume that gives off light, at a lattice of rays over the image:
-/// tenths of a second, and nothing where there is none of them.
+/// Finds the sky and each emissive volume, and computes their changes on a lattice of rays over the
+/// image. Takes some tenths of a second, and no time if there are none.
 std::vector<PointedLamp> find_pointed_lamps(const AssembledScene& scene);
 
-/// One line for each of `lamps` that matters, and how to have more points.
+/// Returns a note, one line, for each of `lamps` that matters, which says how to get more points.
 std::vector<std::string> pointed_lamp_notes(const AssembledScene& scene,
                                             const std::vector<PointedLamp>& lamps);
 

@@ -15,17 +15,17 @@ namespace uw {
 
 namespace {
 
-// Particles are drawn where they cover so much of a pixel, as long as they are not too many.
-constexpr double k_min_cover = 1e-3;
-// Above this, single particles are missed by the eye.
-constexpr double k_visible_cover = 0.02;
-// Light from beyond this optical depth, in the clearest band, is a thousandth of what it was.
-constexpr double k_seen_depth = 6.9;
-constexpr double k_farthest = 200;  // m
-// Neighbouring covers that are tried.
-constexpr double k_cover_step = 1.05;
+// Particles are drawn if they cover this fraction of a pixel, unless there are too many.
+constexpr double k_min_coverage = 1e-3;
+// Fraction of a pixel above which the eye would miss single particles that are not drawn.
+constexpr double k_visible_coverage = 0.02;
+// Optical depth, in the clearest band, behind which a thousandth of the light is left.
+constexpr double k_max_depth = 6.9;
+constexpr double k_max_distance = 200;  // m
+// Ratio of successive coverages that are tried.
+constexpr double k_coverage_step = 1.05;
 
-/// The solid angle in water of the whole image [sr].
+/// Returns the solid angle in water of the whole image [sr].
 double view_angle(const Camera& camera) {
     constexpr int k_steps = 32;
     const auto ray = [&](int i, int j) {
@@ -52,27 +52,27 @@ std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Cam
                                                        .alone = snow_alone(desc, medium)});
     const std::vector<SnowClass>& classes = model->field.classes();
     const double min_c = medium.uniform.attenuation().least(medium.wavelengths_nm.size());
-    const double reach = std::min(k_farthest, k_seen_depth / std::max(min_c, 1e-6));
+    const double max_distance = std::min(k_max_distance, k_max_depth / std::max(min_c, 1e-6));
     const double view = view_angle(camera);
     const double pixel = view / camera.width() / camera.height();
-    model->ranges.assign(classes.size(), reach);
-    double wanted = 0;  // of particles in view
-    for (double cover = k_min_cover; view > 0; cover *= k_cover_step) {
+    model->ranges.assign(classes.size(), max_distance);
+    double wanted = 0;  // expected number of particles in view
+    for (double coverage = k_min_coverage; view > 0; coverage *= k_coverage_step) {
         double count = 0;
         for (std::size_t k = 0; k < classes.size(); ++k) {
             double& range = model->ranges[k];
-            range = std::min(reach, std::sqrt(classes[k].mean_area / (cover * pixel)));
+            range = std::min(max_distance, std::sqrt(classes[k].mean_area / (coverage * pixel)));
             count += classes[k].number * view * range * range * range / 3;
         }
         model->expected_count = count;
         if (wanted == 0) wanted = count;
         if (count > desc.most) continue;
-        if (cover > k_visible_cover)
+        if (coverage > k_visible_coverage)
             model->warning = fmt::format(
                 "{}: of about {:.3g} particles in view {:.3g} are drawn, those that cover {:.2g} % "
                 "of a pixel or more, and the others are their mean; give a greater least diameter "
                 "or a smaller number, or most",
-                desc.where, wanted, count, 100 * cover);
+                desc.where, wanted, count, 100 * coverage);
         break;
     }
     return model;
@@ -85,7 +85,7 @@ const TrajectoryDesc* trajectory_of(const SceneDesc& scene) {
     return scene.camera.trajectory ? &*scene.camera.trajectory : nullptr;
 }
 
-/// Where the camera of an image moves while its shutter is open; `from` and `to` in time.
+/// Moves a pose as the trajectory moves between the times `from` and `to`.
 Affine moved(const Trajectory& trajectory, double from, double to, const Affine& pose) {
     return trajectory.at(to).affine() * trajectory.at(from).affine().inverse() * pose;
 }
@@ -113,16 +113,17 @@ std::vector<ExposureView> exposure_views(const SceneDesc& scene, double middle) 
 
 namespace {
 
-// Rays along each edge of the image and in rows between. What bulges between two of them, of the
-// edges of a distorted image, is less than (angle between them)^2 / 8 of the distance.
+// Intervals between rays along each edge of the image, and in rows between. The edge of a distorted
+// image deviates from straight lines between the rays by less than (angle between them)^2 / 8 of
+// the distance.
 constexpr int k_hull_steps = 48;
 constexpr double k_bulge = 1e-3;
 
-/// The rays of an image position through the centre of the aperture and around its rim.
+/// Appends the rays of an image position through the centre of the aperture and around its rim.
 void append_rays(const Camera& camera, double x, double y, std::vector<Ray>& rays) {
     if (const auto ray = camera.refracted_ray(x, y)) rays.push_back(*ray);
     if (!camera.has_aperture()) return;
-    // An octagon around the circle.
+    // The rim is represented by the octagon around it.
     constexpr double k_around = 1.0824;  // 1 / cos 22.5 degrees
     for (int i = 0; i < 8; ++i) {
         const double angle = i * 0.7853981633974483;
@@ -132,8 +133,8 @@ void append_rays(const Camera& camera, double x, double y, std::vector<Ray>& ray
     }
 }
 
-/// Outward normals of a pyramid through the corners of the view; wherever they point, the body
-/// between planes across them holds all that is seen.
+/// Returns outward normals of a pyramid through the corners of the view. Whatever their directions,
+/// planes across them can bound all that is visible.
 std::vector<Vector3> side_normals(const Camera& camera) {
     const double width = camera.width(), height = camera.height();
     const std::array<std::optional<Ray>, 4> corners{
@@ -155,7 +156,8 @@ std::vector<Vector3> side_normals(const Camera& camera) {
 
 }  // namespace
 
-ViewHull::ViewHull(const std::vector<ExposureView>& views, double reach, const Vector3& drift) {
+ViewHull::ViewHull(const std::vector<ExposureView>& views, double max_distance,
+                   const Vector3& drift) {
     for (const Vector3& normal : side_normals(views.front().camera))
         planes_.push_back({normal, -1e300});
     std::vector<Ray> rays;
@@ -170,16 +172,16 @@ ViewHull::ViewHull(const std::vector<ExposureView>& views, double reach, const V
                             static_cast<double>(j) / k_hull_steps * view.camera.height(), rays);
             }
         for (const Ray& ray : rays)
-            for (const double s : {0.0, reach}) {
-                const Point3 seen = ray.at(s) - view.time * drift;
-                bounds_.extend(seen);
+            for (const double s : {0.0, max_distance}) {
+                const Point3 visible = ray.at(s) - view.time * drift;
+                bounds_.extend(visible);
                 for (Plane& plane : planes_)
                     plane.offset =
-                        std::max(plane.offset, glm::dot(plane.normal, from_origin(seen)));
+                        std::max(plane.offset, glm::dot(plane.normal, from_origin(visible)));
             }
     }
     if (bounds_.empty()) return;
-    const double margin = k_bulge * reach;
+    const double margin = k_bulge * max_distance;
     for (int axis = 0; axis < 3; ++axis) {
         bounds_.min[axis] -= margin;
         bounds_.max[axis] += margin;
@@ -221,15 +223,15 @@ void SnowLighting::radiance(const Point3& x, const Ray& ray, double distance,
 
 namespace {
 
-/// Cells of a class of particles in one layer of its lattice.
+/// The cells of one layer of the lattice of a class of particles.
 struct CellLayer {
-    std::size_t kind;
+    std::size_t size_class;
     std::int64_t first;  // index along x
-    double reach;
+    double max_distance;
     const ViewHull* hull;
 };
 
-/// Two directions across a ray.
+/// Two unit vectors that are perpendicular to a ray and to each other.
 struct AcrossAxes {
     Vector3 u, v;
 
@@ -240,21 +242,22 @@ struct AcrossAxes {
     }
 };
 
-/// How far from `x` a ray passes the plane across `direction` through it.
-Vector3 miss(const Ray& ray, const Point3& x, const Vector3& direction) {
+/// Returns the offset from `x` of the intersection of a ray with the plane through `x` that is
+/// perpendicular to `direction`.
+Vector3 offset_in_plane(const Ray& ray, const Point3& x, const Vector3& direction) {
     const double s = glm::dot(x - ray.origin, direction) / glm::dot(ray.direction, direction);
     return ray.at(s) - x;
 }
 
-/// Metres in that plane per pixel; empty where the image has no neighbouring rays.
+/// Returns the map from pixels to metres in that plane; none if the image has no neighbouring rays.
 std::optional<PlaneMap> plane_from_pixels(const Camera& camera, const ImagePoint& at,
                                           const Ray& ray, const Point3& x, const AcrossAxes& axes) {
     constexpr double k_step = 0.5;  // pixels
     const auto moved = [&](double dx, double dy) -> std::optional<std::array<double, 2>> {
         for (const double sign : {1.0, -1.0}) {
-            const auto beside = camera.refracted_ray(at.x + sign * dx, at.y + sign * dy);
-            if (!beside) continue;
-            const Vector3 offset = sign / k_step * miss(*beside, x, ray.direction);
+            const auto neighbour = camera.refracted_ray(at.x + sign * dx, at.y + sign * dy);
+            if (!neighbour) continue;
+            const Vector3 offset = sign / k_step * offset_in_plane(*neighbour, x, ray.direction);
             return std::array<double, 2>{glm::dot(offset, axes.u), glm::dot(offset, axes.v)};
         }
         return std::nullopt;
@@ -266,36 +269,37 @@ std::optional<PlaneMap> plane_from_pixels(const Camera& camera, const ImagePoint
     return map;
 }
 
-/// Where an image out of focus shows light of `x`, by the point of the aperture that it passes.
+/// Returns the map from points of the aperture to the positions at which an image out of focus
+/// shows `x`.
 PlaneMap blur_of(const Camera& camera, const ImagePoint& at, const Ray& ray, const Point3& x,
                  const AcrossAxes& axes, const PlaneMap& pixels_from_plane) {
     if (!camera.has_aperture()) return {};
-    PlaneMap misses;
+    PlaneMap plane_from_aperture;
     if (const auto side = camera.aperture_ray(at.x, at.y, {1, 0})) {
-        const Vector3 offset = miss(*side, x, ray.direction);
-        misses.xx = glm::dot(offset, axes.u);
-        misses.yx = glm::dot(offset, axes.v);
+        const Vector3 offset = offset_in_plane(*side, x, ray.direction);
+        plane_from_aperture.xx = glm::dot(offset, axes.u);
+        plane_from_aperture.yx = glm::dot(offset, axes.v);
     }
     if (const auto side = camera.aperture_ray(at.x, at.y, {0, 1})) {
-        const Vector3 offset = miss(*side, x, ray.direction);
-        misses.xy = glm::dot(offset, axes.u);
-        misses.yy = glm::dot(offset, axes.v);
+        const Vector3 offset = offset_in_plane(*side, x, ray.direction);
+        plane_from_aperture.xy = glm::dot(offset, axes.u);
+        plane_from_aperture.yy = glm::dot(offset, axes.v);
     }
-    return pixels_from_plane * misses;
+    return pixels_from_plane * plane_from_aperture;
 }
 
-/// The path of the image of what is at `x` in the middle of the exposure.
+/// Returns the path in the image of a point that is at `x` in the middle of the exposure.
 Footprint::Path path_of(const std::vector<ExposureView>& views, const ImagePoint& at,
                         const Point3& x, const Vector3& drift, const AcrossAxes& axes,
                         const PlaneMap& pixels_from_plane) {
-    // Shorter ones [pixels] are straight, and as long as their tangent.
+    // Paths shorter than this [pixels] are taken to be straight.
     constexpr double k_short = 2;
     Footprint::Path path{{at.x, at.y}, {}, {}};
-    // From the middle to the moments when the shutter opens and closes, in units of the half
-    // exposure; an end that is unknown is taken to mirror the other.
+    // Displacements from the middle to the times when the shutter opens and closes. If one of them
+    // is unknown, it is the mirror image of the other.
     std::optional<std::array<double, 2>> before, after;
     for (std::size_t i = 1; i < views.size(); ++i) {
-        // What the camera sees there at that moment it sees here in the middle.
+        // The position at which the camera in the middle sees what this camera sees.
         const Point3 there = views[i].middle_from_moment * (x + views[i].time * drift);
         const Vector3 moved = there - x;
         const double u = glm::dot(moved, axes.u), v = glm::dot(moved, axes.v);
@@ -317,7 +321,7 @@ Footprint::Path path_of(const std::vector<ExposureView>& views, const ImagePoint
     return path;
 }
 
-/// Appends what the window shows of a particle.
+/// Appends the splat of a particle, if it touches the window.
 void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
            const PixelWindow& window, SnowSplats& result) {
     const Camera& camera = scene.views.front().camera;
@@ -328,7 +332,8 @@ void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
     const Ray& ray = sight->ray;
     const double distance = uw::distance(ray.origin, x);
     if (distance > range || distance <= 0.5 * particle.diameter) return;
-    // Most that are not drawn are hidden, or else outside the window: first what tells the sooner.
+    // Most particles that are not drawn are hidden or outside the window: test first what rejects
+    // sooner.
     const bool is_within =
         at.x >= window.x0 && at.x < window.x1 && at.y >= window.y0 && at.y < window.y1;
     const auto end_of_sight = [&] {
@@ -343,21 +348,22 @@ void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
     const Footprint footprint(path_of(scene.views, at, x, scene.desc.drift, axes, pixels),
                               0.5 * particle.diameter * pixels,
                               blur_of(camera, at, ray, x, axes, pixels));
-    const PixelWindow seen = intersection(footprint.bounds(), window);
-    if (seen.width() <= 0 || seen.height() <= 0) return;
+    const PixelWindow visible = intersection(footprint.bounds(), window);
+    if (visible.width() <= 0 || visible.height() <= 0) return;
     if (!is_within) end = end_of_sight();
     if (end <= distance) return;
     const std::size_t bands = scene.desc.reflectance.size();
     thread_local std::vector<double> radiance;
     radiance.resize(bands);
     scene.lighting.radiance(x, ray, distance, radiance);
-    // The coefficients hold the particles in front of this one, which cover it as well.
-    const double seen_through =
+    // The coefficients include the attenuation by the particles in front of this one, which are
+    // also drawn over it: undo the former.
+    const double factor =
         std::exp(scene.model.drawn_depth(distance)) * scene.sensor.surface_factor(distance);
     const auto first = static_cast<std::uint32_t>(result.radiance.size());
     for (std::size_t b = 0; b < bands; ++b)
         result.radiance.push_back(
-            static_cast<float>(radiance[b] * scene.desc.reflectance[b] * seen_through));
+            static_cast<float>(radiance[b] * scene.desc.reflectance[b] * factor));
     result.splats.push_back(
         {.distance = distance,
          .id = particle.id,
@@ -370,19 +376,19 @@ std::int64_t cell_of(double position, double edge) {
     return static_cast<std::int64_t>(std::floor(position / edge));
 }
 
-/// The particles of a class in one layer of cells.
+/// Places the particles of a class in one layer of cells.
 void place_layer(const SnowPlacing& scene, const CellLayer& layer, const PixelWindow& window,
                  SnowSplats& result) {
-    const SnowClass& kind = scene.model.field.classes()[layer.kind];
+    const SnowClass& size_class = scene.model.field.classes()[layer.size_class];
     const Vector3 moved = scene.model.field.displacement(scene.time);
     const Bounds& bounds = layer.hull->bounds();
-    const double margin = 0.5 * kind.greatest;
-    const double around_cell = 0.5 * std::sqrt(3.0) * kind.edge + margin;
+    const double margin = 0.5 * size_class.greatest;
+    const double around_cell = 0.5 * std::sqrt(3.0) * size_class.edge + margin;
     std::array<std::int64_t, 2> first{}, last{};
     for (int axis = 1; axis < 3; ++axis) {
         const auto i = static_cast<std::size_t>(axis - 1);
-        first[i] = cell_of(bounds.min[axis] - margin - moved[axis], kind.edge);
-        last[i] = cell_of(bounds.max[axis] + margin - moved[axis], kind.edge);
+        first[i] = cell_of(bounds.min[axis] - margin - moved[axis], size_class.edge);
+        last[i] = cell_of(bounds.max[axis] + margin - moved[axis], size_class.edge);
     }
     thread_local std::vector<SnowParticle> particles;
     for (std::int64_t j = first[0]; j <= last[0]; ++j)
@@ -390,15 +396,15 @@ void place_layer(const SnowPlacing& scene, const CellLayer& layer, const PixelWi
             const SnowCell cell{layer.first, j, k};
             Point3 centre;
             for (int axis = 0; axis < 3; ++axis)
-                centre[axis] =
-                    (static_cast<double>(cell[static_cast<std::size_t>(axis)]) + 0.5) * kind.edge +
-                    moved[axis];
+                centre[axis] = (static_cast<double>(cell[static_cast<std::size_t>(axis)]) + 0.5) *
+                                   size_class.edge +
+                               moved[axis];
             if (!layer.hull->may_see(centre, around_cell)) continue;
             particles.clear();
-            scene.model.field.append_particles(layer.kind, cell, scene.time, particles);
+            scene.model.field.append_particles(layer.size_class, cell, scene.time, particles);
             for (const SnowParticle& particle : particles)
                 if (layer.hull->may_see(particle.position, margin))
-                    place(scene, particle, layer.reach, window, result);
+                    place(scene, particle, layer.max_distance, window, result);
         }
 }
 
@@ -409,13 +415,13 @@ SnowSplats SnowPlacing::splats(const PixelWindow& window, const ProgressCallback
     std::vector<CellLayer> layers;
     hulls.reserve(model.ranges.size());
     for (std::size_t k = 0; k < model.ranges.size(); ++k) {
-        const SnowClass& kind = model.field.classes()[k];
+        const SnowClass& size_class = model.field.classes()[k];
         const ViewHull& hull = hulls.emplace_back(views, model.ranges[k], desc.drift);
         if (hull.bounds().empty()) continue;
-        const double margin = 0.5 * kind.greatest + model.field.displacement(time).x;
-        const double other = 0.5 * kind.greatest - model.field.displacement(time).x;
-        const std::int64_t first = cell_of(hull.bounds().min.x - margin, kind.edge);
-        const std::int64_t last = cell_of(hull.bounds().max.x + other, kind.edge);
+        const double margin = 0.5 * size_class.greatest + model.field.displacement(time).x;
+        const double other = 0.5 * size_class.greatest - model.field.displacement(time).x;
+        const std::int64_t first = cell_of(hull.bounds().min.x - margin, size_class.edge);
+        const std::int64_t last = cell_of(hull.bounds().max.x + other, size_class.edge);
         for (std::int64_t i = first; i <= last; ++i)
             layers.push_back({k, i, model.ranges[k], &hull});
     }
@@ -435,9 +441,10 @@ SnowSplats SnowPlacing::splats(const PixelWindow& window, const ProgressCallback
 
 namespace {
 
-/// Makes the ground truth of a pixel that of a particle of snow at this distance along its ray: a
-/// disk that faces the camera, with the number after those of all objects for its id.
-void hold(double distance, const Ray& ray, const PixelRenderer& pixels, PixelResult& result) {
+/// Sets the ground truth of a pixel to that of a particle at this distance along its ray: a disk
+/// that faces the camera, whose id follows those of all objects.
+void set_ground_truth(double distance, const Ray& ray, const PixelRenderer& pixels,
+                      PixelResult& result) {
     result.has_hit = true;
     result.hit = {};
     result.hit.distance = distance;
@@ -492,12 +499,12 @@ void SnowPass::add_to(const RenderedPixel& pixel, const PixelRenderer& pixels) c
     const PixelView& view = pixel.view;
     PixelResult& result = pixel.result;
     const double end = view.has_hit ? view.path : view.distances.back();
-    // Lamps in view are dimmed by the mean of all particles.
+    // Lamps in view are attenuated by the mean of all particles only.
     const Spectrum surface = result.direct - result.lamps_in_view + result.multiple_surface;
     result.snow = layer_->radiance(pixel.x, pixel.y, end, surface,
                                    result.backscatter + result.multiple_volume);
-    const double held = layer_->held(pixel.x, pixel.y);
-    if (in_ground_truth_ && held > 0) hold(held, *view.ray, pixels, result);
+    const double distance = layer_->particle_distance(pixel.x, pixel.y);
+    if (in_ground_truth_ && distance > 0) set_ground_truth(distance, *view.ray, pixels, result);
 }
 
 }  // namespace uw

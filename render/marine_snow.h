@@ -20,57 +20,61 @@
 
 namespace uw {
 
-/// `medium` holds the snow's mean. Throws as without_snow.
+/// Makes the snow of a scene for a camera. The coefficients of `medium` contain the snow's mean.
+/// Throws as without_snow.
 std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
                                                  const Medium& medium);
 
-/// A camera at one moment of an exposure.
+/// A camera at one time of an exposure.
 struct ExposureView {
     Camera camera;
-    double time = 0;            // from the middle of the exposure [s]
-    Affine middle_from_moment;  // takes what it sees to where that is seen in the middle
+    double time = 0;            // relative to the middle of the exposure [s]
+    Affine middle_from_moment;  // maps points to where the camera in the middle sees them in the
+                                // same way
 };
 
-/// The camera of an image's scene when the shutter opens, in the middle and when it closes; in the
-/// middle alone without a shutter (RenderDesc::shutter), and without the ends that its trajectory
-/// does not reach. The `middle` [s] is the first.
+/// Returns the camera of an image's scene in the middle of the exposure, when the shutter opens and
+/// when it closes. Without a shutter (RenderDesc::shutter), it is the middle alone; times that the
+/// camera's trajectory does not include are left out. `middle` [s] comes first.
 std::vector<ExposureView> exposure_views(const SceneDesc& scene, double middle);
 
-/// A convex body around all that an image sees up to a distance while its shutter is open, through
-/// all of the lens's aperture: of what drifts, where it is in the middle of the exposure.
+/// A convex body that contains all points that an image sees up to a distance, at any time while
+/// the shutter is open and through any point of the lens's aperture. Points that drift are included
+/// where they are in the middle of the exposure.
 class ViewHull {
   public:
-    /// `reach` [m] along rays in water; `drift` [m/s].
-    ViewHull(const std::vector<ExposureView>& views, double reach, const Vector3& drift);
+    /// `max_distance` [m] along rays in water; `drift` [m/s].
+    ViewHull(const std::vector<ExposureView>& views, double max_distance, const Vector3& drift);
 
-    /// Whether a sphere may be seen; false only if it is not.
+    /// Whether a sphere may be visible; false only if it is not.
     bool may_see(const Point3& centre, double radius) const {
         for (const Plane& plane : planes_)
             if (glm::dot(plane.normal, from_origin(centre)) > plane.offset + radius) return false;
         return true;
     }
-    /// Around all that is seen; empty if nothing is.
+    /// The bounds of all visible points; empty if there are none.
     const Bounds& bounds() const { return bounds_; }
 
   private:
     struct Plane {
-        Vector3 normal;  // out of the body
+        Vector3 normal;  // points out of the body
         double offset;
     };
     std::vector<Plane> planes_;
     Bounds bounds_;
 };
 
-/// The light of particles as a camera sees it, lit by every emitter as the water around them is.
+/// Computes the radiance of particles, which every emitter lights through the water.
 class SnowLighting {
   public:
-    /// The light splatted may be empty: then columns are integrated. All arguments outlive this.
+    /// `deep_shadows` may be empty: then columns are integrated. All arguments must outlive this
+    /// object.
     SnowLighting(const LitScene& scene,
                  std::span<const std::shared_ptr<const DeepShadow>> deep_shadows)
         : scene_(scene), attenuation_(*scene.medium), deep_shadows_(deep_shadows) {}
 
-    /// The mean radiance of the disk of a white particle at `x`, seen along `ray` at a `distance`
-    /// [m], after the water on the way, into one value per band [W m^-2 sr^-1]. Thread safe.
+    /// Sets `radiance` to the mean radiance at the camera of the disk of a white particle at `x`,
+    /// at a `distance` [m] along `ray`, one value per band [W m^-2 sr^-1]. Thread safe.
     void radiance(const Point3& x, const Ray& ray, double distance,
                   std::span<double> radiance) const;
 
@@ -80,7 +84,7 @@ class SnowLighting {
     std::span<const std::shared_ptr<const DeepShadow>> deep_shadows_;
 };
 
-/// What placing the particles of an image needs; all references outlive it.
+/// Draws the particles of an image; all references must outlive it.
 struct SnowPlacing {
     const SnowModel& model;
     const SnowDesc& desc;
@@ -91,13 +95,13 @@ struct SnowPlacing {
     const WaterVeil& veil;
     const SensorModel& sensor;
 
-    /// Every particle that touches a pixel of `window` and is not behind a surface, on all threads.
-    /// Throws Interrupted.
+    /// Returns the splats of all particles that touch a pixel of `window` and are not behind a
+    /// surface. Runs on all threads. Throws Interrupted.
     SnowSplats splats(const PixelWindow& window, const ProgressCallback& progress) const;
 };
 
-/// Marine snow: places the particles, and adds to each pixel what they change in its light, and in
-/// its ground truth if that is wanted.
+/// Renders marine snow: places the particles, and adds to each pixel the change that they make to
+/// its light and, if requested, to its ground truth.
 class SnowPass final : public Pass {
   public:
     explicit SnowPass(const SnowDesc& desc)

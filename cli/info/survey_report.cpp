@@ -180,13 +180,13 @@ Report report_on_render(const SceneSurvey& survey) {
         light = "all light; what is scattered or reflected more than once, with a standard error";
     if (survey.left_out)
         light += fmt::format(", which leaves out about {} of all light",
-                             percent(survey.left_out->share));
+                             percent(survey.left_out->fraction));
     report.say(fmt::format("integrator {}, quality {}: {}", integrator, quality, light));
     report.set({{"integrator", integrator},
                 {"scattering", word_of(scattering_of(render), k_scattering_names)},
                 {"quality", quality},
                 {"samples", samples_of(render)},
-                {"light_left_out", survey.left_out ? Json(survey.left_out->share) : Json()}});
+                {"light_left_out", survey.left_out ? Json(survey.left_out->fraction) : Json()}});
     return report;
 }
 

@@ -744,7 +744,7 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
         advice.lines.push_back(fmt::format(
             "Single scattering leaves out about {:.0f} % of that scene's light: it asks for all of "
             "it, with render.scattering: multiple.",
-            100 * advice.view.left_out->share));
+            100 * advice.view.left_out->fraction));
 }
 
 namespace {
@@ -837,7 +837,7 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
     if (is_multiple)
         advice.scene += fmt::format(
             "  scattering: multiple    # single leaves out about {:.0f} % of the light\n",
-            100 * advice.view.left_out->share);
+            100 * advice.view.left_out->fraction);
     if (advice.fps) advice.scene += fmt::format("  fps: {:.6g}\n", *advice.fps);
 }
 

@@ -324,7 +324,7 @@ namespace {
 constexpr int k_snow_tile = 32;  // pixels along an edge
 // Values of a pixel after its bands: the fractions of surfaces and of in-scattered light that are
 // hidden, and the distance of a particle.
-enum : std::size_t { k_covered, k_hidden, k_held, k_others };
+enum : std::size_t { k_covered, k_hidden, k_particle_distance, k_others };
 // A particle that covers this fraction of a pixel counts as visible in ground truth.
 constexpr double k_mostly = 0.5;
 
@@ -416,8 +416,8 @@ void SnowImage::draw(const SnowSplat& splat, std::span<const float> radiance,
                 pixel[b] += static_cast<float>(visible * static_cast<double>(radiance[b]));
             others[k_covered] += static_cast<float>(visible);
             others[k_hidden] += static_cast<float>(visible * static_cast<double>(splat.hidden));
-            if (cover >= k_mostly && others[k_held] == 0)
-                others[k_held] = static_cast<float>(splat.distance);
+            if (cover >= k_mostly && others[k_particle_distance] == 0)
+                others[k_particle_distance] = static_cast<float>(splat.distance);
         }
 }
 
@@ -427,7 +427,8 @@ SnowPixel SnowImage::pixel(int x, int y) const {
         values_.row(y - window_.y0)
             .subspan(static_cast<std::size_t>(x - window_.x0) * count, count);
     const auto other = [&](std::size_t i) { return static_cast<double>(values[bands_ + i]); };
-    return {values.first(bands_), 1 - other(k_covered), 1 - other(k_hidden), other(k_held)};
+    return {values.first(bands_), 1 - other(k_covered), 1 - other(k_hidden),
+            other(k_particle_distance)};
 }
 
 namespace {

@@ -108,7 +108,8 @@ struct SnowPixel {
     std::span<const float> radiance;  // by band, of all particles [W m^-2 sr^-1]
     double transparency = 1;          // fraction of a surface that stays visible
     double water = 1;                 // fraction of the in-scattered light that stays visible
-    double held = 0;  // distance of the first that covers at least half of the pixel [m]; 0: none
+    /// Of the first particle that covers at least half of the pixel [m]; 0: none does.
+    double particle_distance = 0;
 };
 
 /// The particles of an image, composited from front to back.
@@ -174,7 +175,7 @@ class SnowLayer {
                       const Spectrum& water) const;
     /// The distance of the first particle that covers at least half of the pixel [m]; 0 if none
     /// does.
-    double held(int x, int y) const { return image_.pixel(x, y).held; }
+    double particle_distance(int x, int y) const { return image_.pixel(x, y).particle_distance; }
 
   private:
     SnowImage image_;

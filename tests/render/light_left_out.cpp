@@ -62,14 +62,14 @@ TEST_F(LeftOut, IsTheShareOfMultipleInTheImage) {
     EXPECT_GT(share, 0.2);
     EXPECT_GT(left_out.error, 0);
     // Three errors, and 0.03 for the places between those that are looked at.
-    EXPECT_NEAR(left_out.share, share, 3 * left_out.error + 0.03);
+    EXPECT_NEAR(left_out.fraction, share, 3 * left_out.error + 0.03);
     EXPECT_LT(left_out.error, 0.1);
 }
 
 TEST_F(LeftOut, IsNothingWhereALoneSurfaceReflectsInClearWater) {
     desc_.water.scattering->b = {0, 0, 0};
     desc_.geometry = {plane_at_z(5)};
-    EXPECT_EQ(estimate().value().share, 0);
+    EXPECT_EQ(estimate().value().fraction, 0);
     EXPECT_FALSE(warning());
 }
 
