@@ -27,7 +27,8 @@ namespace uw {
 
 namespace {
 
-// `name`: what the image is differentiated by, for messages.
+// Throws UsageError for images that cannot be differentiated. `name`: of the parameter, for
+// messages.
 void refuse_other_images(const AssembledScene& scene, const std::string& name) {
     const auto refuse = [&](const char* what) {
         throw UsageError(fmt::format("derivative {}: {}", printable(name), what));
@@ -81,7 +82,8 @@ void refuse_other_changes(const std::string& name, const SceneDesc& desc,
     }
 }
 
-/// What scores need of an assembled scene, kept while the renderer goes on to others.
+/// The parts of an assembled scene that scores need, kept while the renderer assembles other
+/// scenes.
 struct KeptScene {
     explicit KeptScene(const AssembledScene& scene)
         : medium(scene.water.medium),
@@ -103,14 +105,14 @@ struct KeptScene {
     std::optional<WaterSurface> water_surface;
 };
 
-/// Whether its light is that of random paths.
+/// Whether the scene's light is estimated by random paths.
 bool is_by_paths(const AssembledScene& scene) {
     return scene.desc().render.integrator == RenderDesc::Integrator::path ||
            layer_plan(scene.image, {}).is_provided(Layer::multiple);
 }
 
-/// What `by_paths(pixels, window, draws)` or `by_quadrature(pixels, water, window)` makes of the
-/// renderer's scene, as its light requires.
+/// Calls `by_paths(pixels, window, draws)` or `by_quadrature(pixels, water, window)` for the
+/// renderer's scene, as its light requires, and returns the result.
 template <class ByPaths, class ByQuadrature>
 auto by_light(Renderer& renderer, const DerivativeOptions& options, const ByPaths& by_paths,
               const ByQuadrature& by_quadrature) {
@@ -147,8 +149,7 @@ std::vector<float> derivative_images(Renderer& renderer, std::span<const SceneCh
 
 namespace {
 
-/// The renderer's scene and changes of it, which the renderer has assembled. It has the same scene
-/// afterwards.
+/// Assembles changes of a renderer's scene. The renderer has the same scene afterwards.
 class AssembledChanges {
   public:
     AssembledChanges(Renderer& renderer, std::span<const ChangedScene> changes) {
@@ -188,19 +189,19 @@ namespace {
 constexpr std::string_view k_concentration = "concentration.";
 constexpr std::string_view k_small = "water.particles.small", k_large = "water.particles.large";
 
-/// The uniform water's phase function by itself: its parts, per unit of scattering.
-std::vector<Spectrum> shares_of_scattering(const Medium& medium) {
+/// Returns the fraction of the uniform water's scattering by each phase function, by band.
+std::vector<Spectrum> scattering_fractions(const Medium& medium) {
     const Spectrum total = medium.uniform.total_scattering();
-    std::vector<Spectrum> shares = medium.uniform.scattering;
+    std::vector<Spectrum> fractions = medium.uniform.scattering;
     for (std::size_t b = 0; b < medium.wavelengths_nm.size(); ++b) {
         if (!(total[b] > 0))
             throw UsageError(
                 fmt::format("derivative water.scattering: the water does not scatter at {:g} nm, "
                             "so that its phase function is unknown; give it some scattering",
                             medium.wavelengths_nm[b]));
-        for (Spectrum& share : shares) share[b] /= total[b];
+        for (Spectrum& fraction : fractions) fraction[b] /= total[b];
     }
-    return shares;
+    return fractions;
 }
 
 ParticleDerivative derivative_by_particles(const AssembledScene& scene, const std::string& name) {
@@ -225,7 +226,8 @@ std::size_t constituent_called(const std::string& name, const Medium& medium) {
     return static_cast<std::size_t>(found - medium.constituents.begin());
 }
 
-/// The medium with one more of what `name` says: everything is linear in it.
+/// Returns the medium with the parameter `name` increased by one; the coefficients are linear in
+/// it.
 Medium with_one_more(const std::string& name, const AssembledScene& scene) {
     Medium medium = scene.water.medium;
     const auto bands = static_cast<std::size_t>(medium.band_count());
@@ -247,8 +249,9 @@ Medium with_one_more(const std::string& name, const AssembledScene& scene) {
     } else if (name == "water.absorption") {
         for (double& a : medium.uniform.absorption.first(bands)) a += 1;
     } else if (name == "water.scattering") {
-        const std::vector<Spectrum> shares = shares_of_scattering(medium);
-        for (std::size_t m = 0; m < shares.size(); ++m) medium.uniform.scattering[m] += shares[m];
+        const std::vector<Spectrum> fractions = scattering_fractions(medium);
+        for (std::size_t m = 0; m < fractions.size(); ++m)
+            medium.uniform.scattering[m] += fractions[m];
     } else {
         throw UsageError(
             fmt::format("derivative '{}': unknown; use water.absorption, water.scattering, "
@@ -280,7 +283,8 @@ std::vector<float> named_derivatives(Renderer& renderer, std::span<const std::st
 
 namespace {
 
-// Copies of the gradient for the parts of an image may take this much memory, or two.
+// Memory for copies of the gradient, one for each part of an image, of which there are at least two
+// [bytes].
 constexpr double k_gradient_bytes = 256e6;
 constexpr std::size_t k_max_gradient_parts = 16;
 
@@ -309,10 +313,10 @@ std::size_t voxel_count(const LoadedGrid& grid) {
     return grid.size[0] * grid.size[1] * grid.size[2];
 }
 
-/// All that the derivatives of a request are gathered in, part by part of the image.
+/// The gradients of a request, a copy for each part of the image.
 class GradientParts {
   public:
-    /// `draws`: of each ray's nodes a few stand for all.
+    /// `draws`: if set, only a random selection of each ray's nodes is used.
     GradientParts(const AssembledScene& scene, const GradientRequest& by,
                   std::span<const SceneChange> changes, const std::optional<Draws>& draws)
         : tables_(scene.lit()), changed_(scene.lit(), changes) {

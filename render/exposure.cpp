@@ -16,17 +16,18 @@ namespace uw {
 
 namespace {
 
-// Poses that a camera's motion is interpolated from, smoothly and then linearly. Where it turns by
-// a right angle, the second is off by 1e-5 rad.
+// The camera's motion is interpolated smoothly from k_poses poses, and linearly from a table of
+// k_table_size of these. If the camera turns by a right angle, the error of the table is 1e-5 rad.
 constexpr int k_poses = 33, k_table_size = 257;
-// Moments between which things are taken to move straight on, to tell how far.
+// Number of times at which distances in the image are measured; in between, motion is taken to be
+// straight.
 constexpr int k_moments = 9;
-// Image positions whose points are followed, in a row; in a column as many.
+// Image positions whose points are tracked, along each axis.
 constexpr int k_positions = 32;
-// How far things may move in a part of the exposure [pixels], and the most parts.
+// Maximum motion in a part of the exposure [pixels], and maximum number of parts.
 constexpr double k_surface_step = 0.5, k_light_step = 2, k_view_step = 4;
 constexpr int k_max_parts = 64;
-// Samples for a blur that is the mean over them, as for an aperture's.
+// Samples per pixel of motion blur, as many as for that of an aperture.
 constexpr int k_samples = 64;
 
 std::vector<ImageScene> scenes_over(const ImageScene& scene, const TimeSpan& span, int count) {
@@ -48,10 +49,10 @@ bool same_poses(const SceneDesc& a, const SceneDesc& b) {
            same_lamps(a, b);
 }
 
-/// How far a point moves in the image [pixels], far outside of it not counted.
+/// Measures the length of a point's path in the image [pixels], apart from parts far outside of it.
 class Track {
   public:
-    void go_on(const Camera& camera, const Point3& point) {
+    void extend(const Camera& camera, const Point3& point) {
         std::optional<ImagePoint> image = camera.project(point);
         const auto is_near = [](double at, int size) { return at > -size && at < 2.0 * size; };
         if (image && !(is_near(image->x, camera.width()) && is_near(image->y, camera.height())))
@@ -66,14 +67,15 @@ class Track {
     double length_ = 0;
 };
 
-/// A point that the camera sees, or may see.
+/// A point that is visible to the camera, or may be.
 struct TrackedPoint {
     Point3 position;
-    std::uint32_t object = 0;  // whose surface it is on; 0: it is in the water
+    std::uint32_t object = 0;  // id of the object on whose surface it lies; 0: in the water
 };
 
-// What the image shows: surfaces, or water at an optical depth of one.
-std::vector<TrackedPoint> seen_points(const AssembledScene& scene) {
+// Returns points that the image shows: on surfaces or, without one, in the water at an optical
+// depth of one.
+std::vector<TrackedPoint> visible_points(const AssembledScene& scene) {
     const Camera& camera = *scene.camera;
     const Medium& medium = scene.water.medium;
     const double attenuation = medium.uniform.attenuation().greatest(medium.wavelengths_nm.size());
@@ -91,7 +93,7 @@ std::vector<TrackedPoint> seen_points(const AssembledScene& scene) {
     return points;
 }
 
-// An object smaller than the distance of these points is seen by its origin.
+// Returns the origins of objects: an object may be smaller than the spacing of the visible points.
 std::vector<TrackedPoint> origins(const SceneDesc& scene, const SurfaceNames& names) {
     std::vector<TrackedPoint> points;
     for (std::size_t i = 0; i < names.objects.size(); ++i) {
@@ -133,7 +135,7 @@ Camera camera_of_truth(const ImageScene& scene) {
     const CameraDesc& camera = scene.desc().camera;
     const RowExposure rows{.line_time = camera.line_time, .height = camera.height};
     if (rows.line_time == 0) return Camera(camera);
-    // Points outside the image are found by rows that go on by half of its height.
+    // Points outside the image need rows beyond it, by half of its height on either side.
     const TimeSpan all = rows.all();
     return {camera, camera_motion(scene, {2 * all.begin, 2 * all.end}), rows};
 }
@@ -161,10 +163,10 @@ Exposure::Exposure(const AssembledScene& scene) : scene_(scene) {
 void Exposure::measure(const std::vector<ImageScene>& moments) {
     const SceneDesc& now = scene_.desc();
     const SurfaceNames& names = scene_.surfaces->names();
-    std::vector<TrackedPoint> points = seen_points(scene_);
+    std::vector<TrackedPoint> points = visible_points(scene_);
     std::vector<ObjectMotions> motions;
     std::vector<Camera> cameras;
-    std::vector<std::string> no_warnings;  // files of an exposure are one
+    std::vector<std::string> no_warnings;  // the same files as for the frame
     for (const ImageScene& moment : moments) {
         const SceneDesc& then = moment.desc();
         motions.push_back(object_motions(now, then, names, no_warnings));
@@ -178,17 +180,17 @@ void Exposure::measure(const std::vector<ImageScene>& moments) {
         Track view, surface;
         std::vector<Track> light(now.lamps.size());
         for (std::size_t m = 0; m < moments.size(); ++m) {
-            view.go_on(cameras[m], point.position);
+            view.extend(cameras[m], point.position);
             if (point.object > 0 && !motions[m].empty())
                 if (const auto& motion = motions[m][point.object - 1])
-                    surface.go_on(still, *motion * point.position);
-            // The light of a lamp that moves is taken to move with it.
+                    surface.extend(still, *motion * point.position);
+            // The light of a moving lamp is taken to move with it.
             for (std::size_t j = 0; j < light.size(); ++j) {
                 const Affine before = now.lamps[j].world_from_frame(now.camera.world_from_camera);
                 const SceneDesc& then = moments[m].desc();
                 const Affine after = then.lamps[j].world_from_frame(then.camera.world_from_camera);
                 if (!now.lamps[j].sun)
-                    light[j].go_on(still, after * before.inverse() * point.position);
+                    light[j].extend(still, after * before.inverse() * point.position);
             }
         }
         view_pixels_ = std::max(view_pixels_, view.length());
@@ -203,19 +205,19 @@ double Exposure::motion_pixels() const {
 
 void Exposure::divide(int samples) {
     const double rows_in_all = rows_.all().length();
-    const double share = rows_.shutter / rows_in_all;  // of a row's exposure in that of all
+    const double fraction = rows_.shutter / rows_in_all;  // of the exposure, for a row
     double parts = std::max(surface_pixels_ / k_surface_step, light_pixels_ / k_light_step);
-    if (view_pixels_ * share > k_view_step) parts = std::max(parts, view_pixels_ / k_view_step);
+    if (view_pixels_ * fraction > k_view_step) parts = std::max(parts, view_pixels_ / k_view_step);
     const bool is_path = integrator_kind(scene_.desc().render.integrator).traces_paths;
-    // Light paths tell their error by two of them.
+    // Path tracing needs two samples to estimate its error.
     const double max_in_a_row = is_path ? samples / 2 : samples;
     parts = std::min(parts, static_cast<double>(k_max_parts));
-    if (share > 0) parts = std::min(parts, max_in_a_row / share);
+    if (fraction > 0) parts = std::min(parts, max_in_a_row / fraction);
     parts_ = std::max(1, static_cast<int>(std::ceil(parts)));
     samples_of_part_ = samples;
     if (rows_.shutter > 0)
         samples_of_part_ =
-            static_cast<int>(std::ceil(samples / std::max(1.0, parts_ * share) - 1e-9));
+            static_cast<int>(std::ceil(samples / std::max(1.0, parts_ * fraction) - 1e-9));
 }
 
 int Exposure::samples() const {
@@ -245,7 +247,7 @@ AssembledScene Exposure::part(int part, SceneCache& cache) const {
     const ImageScene& now = scene_.image;
     ImageScene then = now.at(*now.time() + rows.part.middle()).with([&](SceneDesc& desc) {
         desc.render.samples = samples_of_part_;
-        // What snow streaks over; volumes are blurred already.
+        // The shutter's time of the part is that of snow's streaks; volumes are blurred already.
         if (rows_.shutter > 0) desc.render.shutter = rows.part.length();
     });
     auto camera = camera_ ? std::make_unique<Camera>(then.desc().camera, camera_, rows)
@@ -259,28 +261,28 @@ AssembledScene Exposure::part(int part, SceneCache& cache) const {
 
 namespace {
 
-/// The rows of `window` that have a share of a part; all of them for forward scatter, whose light
-/// comes from everywhere.
+/// Returns the rows of `window` that are exposed in a part, or all of them if the passes need the
+/// whole image.
 PixelWindow rows_of_part(const Exposure& exposure, int part, bool needs_all,
                          const PixelWindow& window) {
     if (needs_all) return window;
     PixelWindow rows = window;
-    while (rows.y0 < rows.y1 && exposure.share(part, rows.y0) == 0) ++rows.y0;
-    while (rows.y1 > rows.y0 && exposure.share(part, rows.y1 - 1) == 0) --rows.y1;
+    while (rows.y0 < rows.y1 && exposure.fraction(part, rows.y0) == 0) ++rows.y0;
+    while (rows.y1 > rows.y0 && exposure.fraction(part, rows.y1 - 1) == 0) --rows.y1;
     return rows;
 }
 
-/// What the parts have reached, as if they were one image.
+/// Combines the progress of the parts into that of the image.
 class ReachedByParts {
   public:
-    /// The errors of the parts' light paths are independent.
+    /// Includes a part. The errors of the parts' light paths are independent.
     void add(const ImageProgress& part) {
         samples_ += part.paths.samples;
         if (part.paths.error) squares_ += *part.paths.error * *part.paths.error;
         fast_.include_multiple_error(part);
         snow_ = std::max(snow_, part.snow_particles);
     }
-    void tell(int parts, int samples_of_pixel, ImageProgress& reached) const {
+    void report(int parts, int samples_of_pixel, ImageProgress& reached) const {
         if (samples_ > 0) {
             reached.paths = {samples_of_pixel, {}};
             if (squares_ > 0) reached.paths.error = std::sqrt(squares_) / parts;
@@ -292,8 +294,8 @@ class ReachedByParts {
   private:
     int samples_ = 0;
     double squares_ = 0;
-    ImageProgress fast_;      // its stated errors
-    std::uint64_t snow_ = 0;  // particles of the part with the most
+    ImageProgress fast_;      // maxima of the parts' errors of multiple scattering
+    std::uint64_t snow_ = 0;  // particles of the part that has most of them
 };
 
 }  // namespace
@@ -310,7 +312,7 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
     const PassNeeds needs = passes.needs(plan);
     const int parts = exposure.part_count();
     ReachedByParts reached_by_parts;
-    // The nodes of the fast form have the same random numbers in every part.
+    // MultipleScatteringPass uses the same random numbers in every part.
     const ExposureMean::Errors errors = integrator_kind(desc.render.integrator).traces_paths
                                             ? ExposureMean::Errors::independent
                                             : ExposureMean::Errors::alike;
@@ -361,14 +363,14 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
                               .reached = reached};
             run_light_passes(part, passes, of_part);
             reached_by_parts.add(reached);
-            mean.add(image, [&](int row) { return exposure.share(k, row); });
+            mean.add(image, [&](int row) { return exposure.fraction(k, row); });
         }
         if (truth_differs)
             find_truth(part, transport, [&](int row) { return exposure.has_middle(k, row); });
     }
     mean.finish();
     if (!truth_differs) find_truth(scene, rendering.pixels.transport(), {});
-    reached_by_parts.tell(parts, samples_of(desc.render), rendering.reached);
+    reached_by_parts.report(parts, samples_of(desc.render), rendering.reached);
 }
 
 }  // namespace uw

@@ -15,21 +15,21 @@ namespace uw {
 
 namespace {
 
-// Shadow maps of a lamp's emitters share the texels of a point lamp's, but have no fewer than this
-// along an edge: a shadow narrower than a texel may be missed.
+// The emitters of a lamp divide the texels of a point lamp's shadow map among theirs, but have at
+// least this many along an edge, as a shadow narrower than a texel may be missed.
 constexpr int k_min_shadow_resolution = 128;
-// How far from the camera a sun's shadows in the water matter: the optical depth.
-constexpr double k_reach_depth = 15;
+// The optical depth from the camera beyond which a sun's shadows in the water do not matter.
+constexpr double k_max_depth = 15;
 
 }  // namespace
 
-void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowOptions& share) {
-    const bool same_shadows =
-        surfaces_ == scene.shadow_casters && options_.shadow_resolution == share.shadow_resolution;
+void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowOptions& options) {
+    const bool same_shadows = surfaces_ == scene.shadow_casters &&
+                              options_.shadow_resolution == options.shadow_resolution;
     const bool same_columns = field_.lock() == scene.field &&
-                              options_.columns_per_voxel == share.columns_per_voxel &&
-                              options_.column_budget == share.column_budget &&
-                              options_.column_tolerance == share.column_tolerance;
+                              options_.columns_per_voxel == options.columns_per_voxel &&
+                              options_.column_budget == options.column_budget &&
+                              options_.column_tolerance == options.column_tolerance;
     const auto drop = [&](auto& maps) {
         if (!same_shadows) maps.shadows.reset();
         if (!same_columns) maps.columns.reset();
@@ -38,12 +38,13 @@ void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowO
     std::ranges::for_each(sun_maps_, drop);
     surfaces_ = scene.shadow_casters;
     field_ = scene.field;
-    options_ = share;
+    options_ = options;
 }
 
 int LightSplatter::shadow_resolution(const Lamp& emitter) const {
-    const auto shared = static_cast<int>(options_.shadow_resolution * std::sqrt(emitter.share()));
-    return std::max(shared, std::min(options_.shadow_resolution, k_min_shadow_resolution));
+    const auto resolution =
+        static_cast<int>(options_.shadow_resolution * std::sqrt(emitter.share()));
+    return std::max(resolution, std::min(options_.shadow_resolution, k_min_shadow_resolution));
 }
 
 void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Lamp& emitter) {
@@ -70,9 +71,9 @@ void LightSplatter::complete(Maps& maps, const AssembledScene& scene, const Lamp
 DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOptions& options,
                                  const ProgressCallback& progress) {
     counts_ = {};
-    DeepShadowOptions share = options;
-    share.column_budget /= std::max(std::size_t{1}, scene.emitters.size());
-    drop_outdated(scene, share);
+    DeepShadowOptions per_emitter = options;
+    per_emitter.column_budget /= std::max(std::size_t{1}, scene.emitters.size());
+    drop_outdated(scene, per_emitter);
     const std::vector<Maps> before = std::exchange(maps_, {});
     const std::vector<SunMaps> suns_before = std::exchange(sun_maps_, {});
     DeepShadows fields;
@@ -86,11 +87,12 @@ DeepShadows LightSplatter::splat(const AssembledScene& scene, const DeepShadowOp
     return fields;
 }
 
-// The maps to come are taken to be as large as those so far. Asked whenever these have doubled.
+// Checks for free memory whenever the number of maps has doubled, as if the remaining ones were as
+// large as those so far.
 void LightSplatter::expect_room(std::size_t done, std::size_t all) const {
     if (!std::has_single_bit(done)) return;
-    const double share_to_come = static_cast<double>(all - done) / static_cast<double>(done);
-    require_memory(static_cast<double>(counts_.bytes) * share_to_come,
+    const double remaining_ratio = static_cast<double>(all - done) / static_cast<double>(done);
+    require_memory(static_cast<double>(counts_.bytes) * remaining_ratio,
                    fmt::format("lamps: what {} points of light see takes another", all),
                    "use fewer lamps, fewer `samples` of those with an extent, or --quality draft");
 }
@@ -123,10 +125,10 @@ std::shared_ptr<const DeepShadow> LightSplatter::splat_sun(const AssembledScene&
     const AttenuationTable attenuation(scene.water.medium);
     const double least =
         attenuation.uniform.least(static_cast<std::size_t>(attenuation.band_count));
-    const double reach = least > 0 ? std::min(k_far, k_reach_depth / least) : k_far;
+    const double max_distance = least > 0 ? std::min(k_far, k_max_depth / least) : k_far;
     const Point3 camera = at_origin_plus(scene.camera->world_from_camera().offset());
     SunMaps maps{sun, shadow_resolution(emitter),
-                 SunShadowMap::squares_around(camera, reach, scene.surfaces->bounds(), sun),
+                 SunShadowMap::squares_around(camera, max_distance, scene.surfaces->bounds(), sun),
                  nullptr, nullptr};
     for (const std::vector<SunMaps>* known : {&std::as_const(sun_maps_), &before}) {
         for (const SunMaps& other : *known) {
