@@ -24,16 +24,16 @@ namespace uw {
 namespace {
 
 constexpr int k_batches = 16;
-// No phase function varies below this tangent of half the angle.
+// Phase functions do not vary below this tangent of half the angle.
 constexpr double k_min_half_tangent = 0x1p-22;
-// The share of rays that are drawn evenly.
-constexpr double k_even_share = 0.5;
-// A single direction needs fewer rays than all together.
-constexpr int k_share_of_vertical = 4;
+// The probability of sampling a direction uniformly.
+constexpr double k_uniform_probability = 0.5;
+// Radiance in a single direction takes fewer rays than irradiance, by this factor.
+constexpr int k_vertical_divisor = 4;
 constexpr int k_trial_rays = 256;
 constexpr std::uint64_t k_meter_seed = 0x6d65746572;
 
-/// The sum of what paths bring.
+/// Sums the contributions of paths.
 class RadianceSum final : public ContributionSink {
   public:
     explicit RadianceSum(std::size_t bands) : bands_(bands) {}
@@ -48,11 +48,12 @@ class RadianceSum final : public ContributionSink {
     Spectrum sum_{};
 };
 
-/// Light that arrives from a lamp's direction alone: irradiance across it.
+/// Direct light of a lamp: its direction, and the irradiance on a plane perpendicular to it.
 struct Beam {
-    Vector3 towards;  // the lamp, unit
+    Vector3 towards;  // unit vector to the lamp
     Spectrum irradiance{};
-    double weight = 0;  // without attenuation, summed over bands: rays are drawn by it
+    double weight = 0;  // irradiance without attenuation, summed over bands; rays are sampled in
+                        // proportion to it
 };
 
 std::vector<Beam> beams_at(const AssembledScene& scene, const Point3& x) {
@@ -61,13 +62,13 @@ std::vector<Beam> beams_at(const AssembledScene& scene, const Point3& x) {
     std::vector<Beam> beams;
     for (const Lamp& emitter : scene.emitters) {
         const Point3 origin = emitter.origin(x);
-        const Vector3 way = x - origin;
-        const double radius = glm::length(way);
+        const Vector3 from_lamp = x - origin;
+        const double radius = glm::length(from_lamp);
         if (!(radius > 0) || emitter.holds(radius)) continue;
         const double relative =
-            emitter.relative_intensity(way) * emitter.focus(x) / emitter.spread(radius);
+            emitter.relative_intensity(from_lamp) * emitter.focus(x) / emitter.spread(radius);
         if (!(relative > 0)) continue;
-        Beam beam{-way / radius};
+        Beam beam{-from_lamp / radius};
         for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation.band_count); ++b)
             beam.weight += relative * emitter.axis_intensity()[b];
         if (!scene.surfaces->occluded(origin, x)) {
@@ -81,10 +82,10 @@ std::vector<Beam> beams_at(const AssembledScene& scene, const Point3& x) {
     return beams;
 }
 
-/// A density of rays around a lamp over h = tan(psi / 2). Half of it is as much in each octave up
-/// to h = 1: light that a lamp nearby scatters falls as 1/psi. The other half has the shape of the
-/// water's phase functions: next to the direction of a sun, light that is scattered once has it,
-/// however steep it is.
+/// Returns the pdf of rays around a lamp over h = tan(psi / 2), a mixture. One half is constant per
+/// octave up to h = 1, as the scattered light of a lamp nearby falls as 1/psi. The other half has
+/// the shape of the water's phase functions, as has single scattering around the direction of a
+/// sun, however peaked.
 HalfTangentDensity density_around_lamps(const ScatteringTables& tables) {
     const double octaves = std::log(1 / k_min_half_tangent);
     std::vector<double> values;
@@ -98,55 +99,57 @@ HalfTangentDensity density_around_lamps(const ScatteringTables& tables) {
     return HalfTangentDensity(values);
 }
 
-/// Directions from which light arrives: a share of them drawn evenly, the rest around beams.
+/// Samples directions from which light arrives, by a mixture of a uniform pdf and pdfs around
+/// beams.
 class Directions {
   public:
-    /// `around`: density_around_lamps.
+    /// `around` is density_around_lamps.
     Directions(const std::vector<Beam>& beams, const HalfTangentDensity& around)
         : beams_(beams), around_(around) {
         for (const Beam& beam : beams) total_ += beam.weight;
     }
 
-    /// Uses three random numbers.
-    Vector3 draw(PathRandom& random) const {
-        const double of_kind = random.next(), u = random.next(), azimuth = random.next();
-        const double even = even_share();
-        if (of_kind < even) {
+    /// Samples a direction with three random numbers.
+    Vector3 sample(PathRandom& random) const {
+        const double choice = random.next(), u = random.next(), azimuth = random.next();
+        const double uniform = uniform_probability();
+        if (choice < uniform) {
             const double z = 1 - 2 * u, r = std::sqrt(std::max(0.0, 1 - z * z));
             const double v = 2 * std::numbers::pi * azimuth;
             return {r * std::cos(v), r * std::sin(v), z};
         }
-        double target = (of_kind - even) / (1 - even) * total_;
+        double target = (choice - uniform) / (1 - uniform) * total_;
         std::size_t i = 0;
         while (i + 1 < beams_.size() && target >= beams_[i].weight) target -= beams_[i++].weight;
         return direction_around(beams_[i].towards, around_.invert(u * around_.mass()), azimuth);
     }
 
-    /// Of what draw returns [1/sr].
-    double density(const Vector3& direction) const {
-        const double even = even_share();
+    /// Returns the pdf of sample() [1/sr].
+    double pdf(const Vector3& direction) const {
+        const double uniform = uniform_probability();
         double around = 0;
         for (const Beam& beam : beams_) {
             const double h = half_tangent_between(direction, beam.towards);
             around += beam.weight * around_.density(h) / around_.mass() * per_solid_angle(h);
         }
-        return even / (4 * std::numbers::pi) + (total_ > 0 ? (1 - even) * around / total_ : 0);
+        return uniform / (4 * std::numbers::pi) +
+               (total_ > 0 ? (1 - uniform) * around / total_ : 0);
     }
 
   private:
-    double even_share() const { return total_ > 0 ? k_even_share : 1; }
+    double uniform_probability() const { return total_ > 0 ? k_uniform_probability : 1; }
 
     const std::vector<Beam>& beams_;
     const HalfTangentDensity& around_;
     double total_ = 0;
 };
 
-/// One estimate of the radiance that arrives along a ray, but for that of lamps themselves.
+/// Estimates the radiance that arrives along a ray, without that of lamps that the ray meets.
 class RadianceEstimate {
   public:
-    /// `typical`: the radiance from all around, in the mean over directions and bands, as far as it
-    /// is known. Deep in the water paths know nothing but the little of it that lamps give
-    /// directly.
+    /// `typical`: an estimate of the mean radiance over directions and bands, for the expected
+    /// contribution that guides Russian roulette and splitting. Deep in the water, paths would
+    /// otherwise underestimate it, from the little direct light of lamps.
     RadianceEstimate(const AssembledScene& scene, const LightTransport& transport, double typical)
         : scene_(scene),
           transport_(transport),
@@ -155,10 +158,10 @@ class RadianceEstimate {
           bands_(static_cast<std::size_t>(scene.water.medium.band_count())),
           columns_(attenuation_.constituents.size()) {}
 
-    /// `with_sky`: and that of the sky, which beams stand for.
+    /// `with_sky`: whether to include the radiance of the sky, for which beams are used otherwise.
     Spectrum operator()(Ray ray, std::uint64_t seed, std::uint32_t index, bool with_sky = false) {
-        constexpr int k_max_mirrors = 8;  // one is all that plane surfaces have
-        Spectrum radiance{}, share = per_band(bands_, [](std::size_t) { return 1.0; });
+        constexpr int k_max_mirrors = 8;  // a plane surface has one
+        Spectrum radiance{}, throughput = per_band(bands_, [](std::size_t) { return 1.0; });
         for (int mirrors = 0; mirrors < k_max_mirrors; ++mirrors) {
             SurfaceSample sample{ray, {}, 0, 0};
             const bool has_hit = scene_.surfaces->closest_hit(ray, k_far, sample.hit);
@@ -168,9 +171,9 @@ class RadianceEstimate {
             if (is_surface) find_direct(sample, leaving);
             transport_.paths->begin(ray, has_hit ? &sample.hit : nullptr, leaving.first(bands_),
                                     segment_);
-            CameraSegment::Expected& expected = segment_.light;
-            light.own = std::max(light.own, typical_);
-            light.ambient = std::max(light.ambient, typical_ / k_ambient_beyond);
+            CameraSegment::Expected& expected = segment_.expected;
+            expected.pixel = std::max(expected.pixel, typical_);
+            expected.ambient = std::max(expected.ambient, typical_ / k_ambient_beyond);
             const auto stream = [&](std::uint64_t kind) {
                 return PathRandom(
                     PathRandom::seed_of(seed, kind, static_cast<std::uint64_t>(mirrors)), index);
@@ -181,25 +184,26 @@ class RadianceEstimate {
             transport_.paths->trace_lit_surfaces(segment_, lit, sum_);
             transport_.paths->trace_surface(segment_, surface, sum_);
             for (std::size_t b = 0; b < bands_; ++b)
-                radiance[b] += share[b] * (sum_.sum()[b] + leaving[b] * segment_.transmittance[b]);
+                radiance[b] +=
+                    throughput[b] * (sum_.sum()[b] + leaving[b] * segment_.transmittance[b]);
             if (!has_hit || is_surface) break;
             if (with_sky) {
                 const Spectrum sky = scene_.surfaces->material(sample.hit).emission;
                 for (std::size_t b = 0; b < bands_; ++b)
-                    radiance[b] += share[b] * sky[b] * segment_.transmittance[b];
+                    radiance[b] += throughput[b] * sky[b] * segment_.transmittance[b];
             }
             const WaterSurface& mirror = *scene_.water_surface;
             scene_.field->column(ray.origin, sample.hit.position, columns_);
-            share *= attenuation_.transmittance(sample.hit.distance, columns_);
+            throughput *= attenuation_.transmittance(sample.hit.distance, columns_);
             const Vector3 normal = -sample.hit.geometric_normal;
-            share *= mirror.reflectance_from_water(glm::dot(ray.direction, normal));
+            throughput *= mirror.reflectance_from_water(glm::dot(ray.direction, normal));
             ray = mirror.reflected(ray, {sample.hit.distance, normal});
         }
         return radiance;
     }
 
   private:
-    // What the surface emits, and reflects of lamps, at the surface.
+    // Finds the emission of the surface and its direct light, at the surface.
     void find_direct(const SurfaceSample& sample, Spectrum& leaving) {
         transport_.surfaces->evaluate_one(sample, light_);
         const SurfaceReflection reflection(*scene_.surfaces, sample, static_cast<int>(bands_));
@@ -235,11 +239,11 @@ double mean_radiance(const AssembledScene& scene, const LightTransport& transpor
             const auto index = static_cast<std::uint32_t>(i);
             const std::uint64_t seed = PathRandom::seed_of(k_meter_seed + 1, batch, trial);
             PathRandom random(seed, index);
-            const Vector3 towards = directions.draw(random);
+            const Vector3 towards = directions.sample(random);
             const Spectrum light = estimate({x, towards}, seed + 1, index);
             double sum = 0;
             for (const double band : light.first(bands)) sum += band;
-            sums[batch] += sum / static_cast<double>(bands) / directions.density(towards);
+            sums[batch] += sum / static_cast<double>(bands) / directions.pdf(towards);
         }
     });
     double sum = 0;
@@ -254,8 +258,8 @@ std::uint64_t seed_at(const Point3& x) {
                             std::bit_cast<std::uint64_t>(x.z)));
 }
 
-/// The radiance from all around, in the mean: two trials, the second of which knows what the first
-/// has found.
+/// Estimates the mean radiance over all directions by two trials, the second of which uses the
+/// result of the first.
 double typical_radiance(const AssembledScene& scene, const LightTransport& transport,
                         const Directions& directions, const Point3& x) {
     double typical = 0;
@@ -264,7 +268,7 @@ double typical_radiance(const AssembledScene& scene, const LightTransport& trans
     return typical;
 }
 
-/// The mean of `rays` estimates along one ray; `seed` tells batches apart.
+/// Returns the mean of `rays` estimates along one ray; each batch has its own `seed`.
 Spectrum mean_along(RadianceEstimate& estimate, const Ray& ray, std::uint64_t seed, int rays) {
     Spectrum mean{};
     for (int i = 0; i < rays; ++i) {
@@ -276,7 +280,7 @@ Spectrum mean_along(RadianceEstimate& estimate, const Ray& ray, std::uint64_t se
     return mean;
 }
 
-/// The mean over the batches, and its standard error by their spread.
+/// Returns the mean over the batches, and its standard error from their spread.
 MeteredSpectrum over_batches(const std::array<Spectrum, k_batches>& batches) {
     MeteredSpectrum value;
     Spectrum squares{};
@@ -293,8 +297,8 @@ MeteredSpectrum over_batches(const std::array<Spectrum, k_batches>& batches) {
     return value;
 }
 
-/// Plane irradiance of the sky and suns on calm water, in the air. What a sun carries through the
-/// level in the water, E_n cos, is the share 1 - R of what it brings in the air.
+/// Returns the plane irradiance of sky and suns on calm water, in the air. A sun's irradiance on a
+/// level plane in the water, E_n cos, is 1 - R times that in the air.
 Spectrum irradiance_in_air(const AssembledScene& scene) {
     const WaterSurface& surface = *scene.water_surface;
     Spectrum total = scene.sky ? scene.sky->irradiance() : Spectrum{};
@@ -341,16 +345,16 @@ MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) cons
                 return PathRandom::seed_of(seed, batch, stream);
             };
             PathRandom random(of(0), index);
-            const Vector3 towards = directions.draw(random);
+            const Vector3 towards = directions.sample(random);
             Spectrum light = estimate({x, towards}, of(1), index);
             const double rise = glm::dot(towards, up);
-            light /= directions.density(towards) * in_batch;
-            // Light that comes from above travels down.
+            light /= directions.pdf(towards) * in_batch;
+            // Light from above travels down.
             (rise > 0 ? sums.scalar_down : sums.scalar_up).mean += light;
             light *= std::abs(rise);
             (rise > 0 ? sums.down : sums.up).mean += light;
         }
-        const int vertical = std::max(1, in_batch / k_share_of_vertical);
+        const int vertical = std::max(1, in_batch / k_vertical_divisor);
         sums.radiance_down.mean =
             mean_along(estimate, {x, up}, PathRandom::seed_of(seed, batch, 3), vertical);
         sums.radiance_up.mean =
@@ -374,7 +378,7 @@ MeterReading LightMeter::read(const Point3& x, const Vector3& up, int rays) cons
 }
 
 std::optional<WaterLeaving> LightMeter::read_water_leaving(const Point3& x, int rays) const {
-    constexpr double k_below = 1e-6;  // of the surface [m]
+    constexpr double k_below = 1e-6;  // distance from the surface [m]
     const std::optional<WaterSurface>& surface = scene_.water_surface;
     if (!surface || surface->has_waves()) return std::nullopt;
     const Vector3& up = surface->up();
