@@ -12,12 +12,12 @@ namespace uw {
 
 namespace {
 
-// What is made for one camera, whose rays lead forwards, is not made for its mirror image.
+// Refuses features that are made for the camera's own rays and not for those of its mirror image.
 void check_mirrored(const SceneDesc& scene) {
-    const auto refuse = [&](const char* key, const char* why, const char* mend) {
+    const auto refuse = [&](const char* key, const char* why, const char* hint) {
         throw InputError(fmt::format(
             "{}: {} with a water surface that reflects, where the camera sees it: {}; {}",
-            scene.file.filename().string(), key, why, mend));
+            scene.file.filename().string(), key, why, hint));
     };
     if (integrator_kind(scene.render.integrator).sums_slabs)
         refuse("render.integrator: planes", "its slabs lie across the camera's axis",

@@ -5,8 +5,8 @@
 
 namespace uw {
 
-/// Runs the passes of light on an image of the scene, and again on what its camera sees in the
-/// water's surface, where that reflects: the light of that image is added.
+/// Runs the passes of light on an image of the scene and, if its camera sees a reflecting water
+/// surface, again on the mirror image, whose light is added.
 void run_light_passes(const AssembledScene& scene, PassList& passes, Rendering& rendering);
 
 }  // namespace uw

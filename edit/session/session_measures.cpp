@@ -109,7 +109,7 @@ Json numbers_json(const PictureNumbers& numbers) {
             {"signal_to_backscatter", number_json(numbers.signal_to_backscatter)},
             {"contrast", number_json(numbers.contrast)},
             {"clean_contrast", optional(numbers.clean_contrast)},
-            {"share_above", number_json(numbers.share_above)},
+            {"share_above", number_json(numbers.fraction_above)},
             {"lost_to_water", optional(numbers.lost_to_water)},
             {"evenness", std::move(evenness)}};
 }

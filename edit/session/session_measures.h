@@ -18,7 +18,7 @@ namespace uw {
 /// What a window asks of the numbers of the picture.
 struct NumbersRequest {
     std::optional<PixelWindow> part;  // of the full image; none: the whole image
-    double ratio = 1;                 // of PictureNumbers::share_above
+    double ratio = 1;                 // of PictureNumbers::fraction_above
     bool with_curves = false;
 };
 

@@ -20,7 +20,7 @@ namespace uw {
 namespace {
 
 constexpr int k_longest_side = 256;
-// The most values in all grids together: 1 GiB here, and as much again in OpenVDB.
+// The maximum number of values in all grids together: 1 GiB here, and as much again in OpenVDB.
 constexpr double k_max_values = 1 << 28;
 
 struct Lattice {
@@ -68,10 +68,10 @@ Lattice lattice_over(const AssembledScene& scene) {
     }
 }
 
-// Irradiance at every lattice point, [band][point].
+// The irradiance at every lattice point, [band][point].
 using Irradiance = std::vector<std::vector<float>>;
 
-// Adds that of one emitter.
+// Adds the irradiance of one emitter.
 void add_emitter(const AssembledScene& scene, std::size_t emitter_index, const DeepShadow& light,
                  const Lattice& lattice, const ProgressCallback& progress, Irradiance& result) {
     const Lamp& lamp = scene.emitters[emitter_index];
@@ -90,8 +90,7 @@ void add_emitter(const AssembledScene& scene, std::size_t emitter_index, const D
                 const Vector3 v = x - origin;
                 const double radius = glm::length(v);
                 if (radius == 0 || scene.surfaces->occluded(origin, x)) continue;
-                // A voxel that contains the lamp has no single value: that at its edge is used
-                // instead.
+                // The irradiance diverges in a voxel that contains the lamp: use that at its edge.
                 const double r = std::max(radius, 0.5 * lattice.voxel);
                 light.columns(std::span<const Point3>(&x, 1), column);
                 const Spectrum t = attenuation.transmittance(radius, column);

@@ -43,8 +43,8 @@ double mean_between(std::span<double> values, double low, double high) {
     return mean_of({values.begin() + begin, values.begin() + end});
 }
 
-double percentile(std::span<double> values, double share) {
-    const double place = share * static_cast<double>(values.size() - 1);
+double percentile(std::span<double> values, double fraction) {
+    const double place = fraction * static_cast<double>(values.size() - 1);
     const auto below = values.begin() + static_cast<std::ptrdiff_t>(place);
     std::nth_element(values.begin(), below, values.end());
     const double low = *below;
@@ -64,22 +64,22 @@ double contrast_of(std::span<double> values) {
     return bright + dark > 0 ? (bright - dark) / (bright + dark) : 0;
 }
 
-/// The side of tiles in which light is taken to be even [pixels].
+/// Returns the side of tiles in which lighting is taken to be even [pixels].
 std::size_t tile_side(const PictureLayers& picture) {
-    constexpr int k_least = 8, k_tiles = 16;  // pixels, along the shorter side
+    constexpr int k_min = 8, k_tiles = 16;  // pixels, along the shorter side
     return static_cast<std::size_t>(
-        std::max(k_least, std::min(picture.width, picture.height) / k_tiles));
+        std::max(k_min, std::min(picture.width, picture.height) / k_tiles));
 }
 
-/// A pixel that sees a surface: its place in a list of values, the tile of the picture that it lies
-/// in, and its albedo.
+/// A pixel that sees a surface: its index in a list of values, its tile of the picture, and its
+/// albedo.
 struct SurfacePixel {
     std::size_t place, tile;
     double albedo;
-    bool is_edge;  // of a step in the albedo, whose light is that of both its sides
+    bool is_edge;  // whether it lies at a step of the albedo, whose light mixes both sides
 };
 
-/// Whether the albedo of a pixel is not that of a neighbour.
+/// Whether the albedo of a pixel differs from that of a neighbour.
 bool is_at_edge(const GreyLayers& albedo, std::size_t pixel, std::size_t width,
                 std::size_t height) {
     constexpr double k_step = 0.2;
@@ -93,11 +93,11 @@ bool is_at_edge(const GreyLayers& albedo, std::size_t pixel, std::size_t width,
            (y > 0 && differs(pixel - width)) || (y + 1 < height && differs(pixel + width));
 }
 
-/// The tiles in which surfaces are patterned, and which of their pixels are bright and which dark
-/// by their albedo.
+/// The tiles in which surfaces are patterned, and the pixels in them that are bright and dark by
+/// their albedo.
 class AlbedoPattern {
   public:
-    /// Without pixels at edges, unless there are no others to compare.
+    /// Leaves out pixels at edges, unless there are no others to compare.
     explicit AlbedoPattern(std::vector<SurfacePixel> pixels) {
         std::ranges::stable_sort(pixels, {}, &SurfacePixel::tile);
         std::vector<SurfacePixel> within;
@@ -108,7 +108,7 @@ class AlbedoPattern {
     }
 
     bool empty() const { return tiles_.empty(); }
-    /// The mean of the tiles' contrasts, each counted by its pixels.
+    /// Returns the mean of the tiles' contrasts, weighted by their numbers of pixels.
     double contrast_of(std::span<const double> values) const {
         double sum = 0, count = 0;
         for (const Tile& tile : tiles_) {
@@ -136,7 +136,7 @@ class AlbedoPattern {
     }
 
     void add(std::span<const SurfacePixel> pixels) {
-        constexpr double k_min_contrast = 0.02;  // of a pattern that anyone would call one
+        constexpr double k_min_contrast = 0.02;  // minimum of a visible pattern
         std::vector<double> albedos;
         albedos.reserve(pixels.size());
         for (const SurfacePixel& pixel : pixels) albedos.push_back(pixel.albedo);
@@ -158,17 +158,17 @@ class AlbedoPattern {
     std::vector<Tile> tiles_;
 };
 
-/// `seen`: the irradiance where there is a surface.
-Evenness evenness_of(std::vector<double> seen) {
+/// Computes the evenness of the irradiance at pixels that see a surface.
+Evenness evenness_of(std::vector<double> irradiance) {
     Evenness even;
-    even.pixels = seen.size();
-    if (seen.empty()) return even;
-    even.mean = mean_of(seen);
-    even.least = *std::ranges::min_element(seen);
-    even.greatest = *std::ranges::max_element(seen);
-    even.percentile5 = percentile(seen, 0.05);
-    even.median = percentile(seen, 0.5);
-    even.percentile95 = percentile(seen, 0.95);
+    even.pixels = irradiance.size();
+    if (irradiance.empty()) return even;
+    even.mean = mean_of(irradiance);
+    even.least = *std::ranges::min_element(irradiance);
+    even.greatest = *std::ranges::max_element(irradiance);
+    even.percentile5 = percentile(irradiance, 0.05);
+    even.median = percentile(irradiance, 0.5);
+    even.percentile95 = percentile(irradiance, 0.95);
     if (even.mean > 0) {
         even.min_to_mean = even.least / even.mean;
         even.percentile5_to_mean = even.percentile5 / even.mean;
@@ -236,7 +236,7 @@ PictureNumbers measure_picture(const PictureLayers& picture, std::span<const std
     numbers.signal = mean_of(signals);
     numbers.backscatter = mean_of(scattered);
     numbers.signal_to_backscatter = ratio_of(numbers.signal, numbers.backscatter);
-    numbers.share_above = static_cast<double>(above) / static_cast<double>(totals.size());
+    numbers.fraction_above = static_cast<double>(above) / static_cast<double>(totals.size());
     const AlbedoPattern pattern(std::move(surfaces));
     const auto contrast = [&](std::vector<double>& light) {
         return pattern.empty() ? contrast_of(light) : pattern.contrast_of(light);
@@ -273,8 +273,8 @@ std::optional<PixelWindow> patterned_part(const PictureLayers& picture, int side
         return table[at(x + side, y + side)] - table[at(x, y + side)] - table[at(x + side, y)] +
                table[at(x, y)];
     };
-    // For equal surfaces it is 0 but for rounding, which is far below this; no surface that anyone
-    // would call patterned varies so little.
+    // For equal surfaces, the deviation is 0 except for rounding, which is far below this; that of
+    // a visible pattern is greater.
     constexpr double k_min_deviation = 0.01;
     double most = k_min_deviation * k_min_deviation;
     std::optional<PixelWindow> best;

@@ -16,22 +16,22 @@
 
 namespace uw {
 
-/// One layer of a picture, perhaps of a single lamp: for pixel i (row by row) and band b the value
-/// `gain[b] * values[i * stride + b]`. Lamps are mixed by their gains without being rendered again.
+/// One layer of a picture, perhaps of a single lamp. Its value for pixel i (row by row) and band b
+/// is `gain[b] * values[i * stride + b]`, so that lamps can be mixed without rendering again.
 struct PicturePlane {
     std::span<const float> values;
     std::size_t stride = 0;
     Spectrum gain;
 };
 
-/// The planes of those of `layers` that an image has, times `gain`. They refer to `film`.
+/// Returns the planes of those of `layers` that an image has, times `gain`. They refer to `film`.
 std::vector<PicturePlane> layer_planes(const Film& film, const LayerPlan& plan,
                                        std::initializer_list<Layer> layers, double gain = 1);
 
-/// The mean of a pixel's bands in a sum of layers.
+/// Computes the mean over a pixel's bands of a sum of layers.
 class GreyLayers {
   public:
-    /// `planes` outlive it.
+    /// `planes` must outlive this object.
     GreyLayers(const std::vector<PicturePlane>& planes, std::size_t bands)
         : planes_(planes), bands_(bands) {}
 
@@ -49,95 +49,97 @@ class GreyLayers {
     std::size_t bands_;
 };
 
-/// 0 of no values.
+/// Returns the mean of `values`, 0 without any.
 double mean_of(std::span<const double> values);
 
-/// The mean of the values between two shares of their number, from the least on; the value in the
-/// middle of the two if there is none between them. Orders the values as it needs.
+/// Returns the mean of the values between the quantiles `low` and `high`, 0 to 1, or the value in
+/// the middle of these if there is none between them. Reorders the values.
 double mean_between(std::span<double> values, double low, double high);
 
-/// The value below which a share of the values lies, between its neighbours. Orders the values as
-/// it needs. Precondition: there are some.
-double percentile(std::span<double> values, double share);
+/// Returns the value below which a `fraction` of the values lies, interpolated between its
+/// neighbours. Reorders the values. Precondition: there is a value.
+double percentile(std::span<double> values, double fraction);
 
-/// The numbers by which a designer of lamps judges a picture. The light of a pixel is the mean of
-/// its bands. What comes from surfaces is signal, what the water scatters on its way is
-/// backscatter.
+/// The numbers by which a designer of lamps judges a picture. The light of a pixel is the mean over
+/// its bands. Light from surfaces is the signal; in-scattered light is backscatter.
 
-/// The layers of a picture by what they mean; those of one kind are added up.
+/// The layers of a picture by their meaning; those of one kind are summed.
 struct PictureLayers {
     int width = 0, height = 0;
     std::size_t bands = 0;
     std::vector<PicturePlane> signal;       // direct, forward; multiple.surface
     std::vector<PicturePlane> backscatter;  // backscatter, snow; multiple.volume
-    std::vector<PicturePlane> clean;        // perhaps none
-    std::vector<PicturePlane> irradiance;   // perhaps none
-    std::vector<PicturePlane> albedo;       // perhaps none
+    std::vector<PicturePlane> clean;        // may be empty
+    std::vector<PicturePlane> irradiance;   // may be empty
+    std::vector<PicturePlane> albedo;       // may be empty
 };
 
 /// The layers that picture_layers reads: an argument of --layers.
 inline constexpr const char* k_picture_layers =
     "direct,forward,backscatter,clean,irradiance,albedo";
 
-/// A rendered image as its layers; those it lacks are left out. Refers to `film`.
+/// Returns the layers of a rendered image, apart from those it does not have. Refers to `film`.
 PictureLayers picture_layers(const Film& film, const LayerPlan& plan);
 
-/// How evenly surfaces are lit: irradiance at the pixels that see one, each pixel once [W m^-2]. In
-/// pictures without albedo, surfaces in the dark, and black ones with it, do not count.
+/// How evenly surfaces are lit: the irradiance at the pixels that see a surface [W m^-2]. In
+/// pictures without albedo, surfaces in the dark do not count; in pictures with it, black ones do
+/// not.
 struct Evenness {
     double mean = 0, least = 0, greatest = 0;
     double percentile5 = 0, median = 0, percentile95 = 0;
     double min_to_mean = 0;  // the uniformity U0 of lighting engineers
-    /// percentile5 / mean, which a single dark corner does not decide.
+    /// percentile5 / mean, which does not depend on a single dark corner.
     double percentile5_to_mean = 0;
     std::size_t pixels = 0;
 };
 
-/// What a picture shows, of the whole or of a part.
+/// Numbers of a picture, or of a part of it.
 struct PictureNumbers {
     double signal = 0, backscatter = 0;  // means over the pixels [W m^-2 sr^-1]
     /// signal / backscatter; infinite without backscatter, 0 without either.
     double signal_to_backscatter = 0;
-    /// Michelson contrast (bright - dark) / (bright + dark) of the total light. Where surfaces are
-    /// patterned it is a mean over tiles of a sixteenth of the picture's shorter side, or 8 pixels:
-    /// in each, bright is the mean of the quarter of its pixels with the greatest albedo (and of
-    /// all with the same), dark of that with the least, without those at edges. However unevenly
-    /// the picture is lit, that adds nothing. Without a pattern or a layer of albedo, bright is the
-    /// mean of the pixels between the light's percentiles 75 and 95, dark that between 5 and 25. 0
-    /// in the dark.
+    /// Michelson contrast (bright - dark) / (bright + dark) of the total light; 0 in the dark. If
+    /// surfaces are patterned, it is a mean over tiles of a sixteenth of the picture's shorter
+    /// side, or 8 pixels: in each, bright is the mean over the quarter of its pixels with the
+    /// greatest albedo (and over all with the same), dark that over the quarter with the least,
+    /// without pixels at edges. Uneven lighting does not add to it. Without a pattern or a layer of
+    /// albedo, bright is the mean of the pixels between the light's percentiles 75 and 95, dark
+    /// that between 5 and 25.
     double contrast = 0;
     /// The contrast of the same surfaces without water; none if the picture has no such layer.
     std::optional<double> clean_contrast;
-    /// The share of the pixels whose signal is at least `ratio` times their backscatter.
-    double share_above = 0;
-    /// The share of the light from surfaces that the water takes on its way from the lamps and to
-    /// the camera, 1 - signal / clean.
+    /// The fraction of pixels whose signal is at least `ratio` times their backscatter.
+    double fraction_above = 0;
+    /// The fraction of the light from surfaces that the water attenuates on its path from the lamps
+    /// and to the camera, 1 - signal / clean.
     std::optional<double> lost_to_water;
     std::optional<Evenness> evenness;
 };
 
-/// The pixels of a part of a picture, by their index row by row.
+/// Returns the indices, row by row, of the pixels in a part of a picture.
 std::vector<std::size_t> pixels_within(const PixelWindow& part, int width);
 
-/// The numbers of some pixels. Precondition: there are some, and all lie within the picture.
+/// Computes the numbers of some pixels. Precondition: there is a pixel, and all lie within the
+/// picture.
 PictureNumbers measure_picture(const PictureLayers& picture, std::span<const std::size_t> pixels,
                                double ratio = 1);
-/// The numbers of the pixels in `part`. Precondition: it is not empty and lies within the picture.
+/// Computes the numbers of the pixels in `part`. Precondition: it is not empty and lies within the
+/// picture.
 PictureNumbers measure_picture(const PictureLayers& picture, const PixelWindow& part,
                                double ratio = 1);
 
-/// Where the surfaces are patterned most strongly: the square of `side` pixels in which their
-/// albedo varies most (standard deviation), which on a checkerboard is on its squares. It does not
-/// depend on the lamps. None if no surface is patterned, or the picture has no albedo.
+/// Finds the part with the strongest pattern: the square of `side` pixels in which the albedo has
+/// the greatest standard deviation, such as on a checkerboard. It does not depend on the lamps.
+/// None if no surface is patterned, or the picture has no albedo.
 std::optional<PixelWindow> patterned_part(const PictureLayers& picture, int side);
 
-/// How the light of some pixels, the mean of each one's bands, is spread [W m^-2 sr^-1].
+/// The distribution of the light of some pixels, each the mean over its bands [W m^-2 sr^-1].
 struct Distribution {
     double mean = 0, percentile5 = 0, median = 0, percentile95 = 0;
 };
 
-/// The light of some pixels of an image, or of one lamp in it, by where it comes from; definitions
-/// in docs/edit-numbers.md.
+/// The light of some pixels of an image, or of one lamp in it, by its origin; see
+/// docs/edit-numbers.md.
 struct LightNumbers {
     std::size_t pixels = 0;
     Distribution direct, forward, backscatter;
@@ -149,18 +151,19 @@ struct LightNumbers {
 struct MeasuredImage {
     const Film& film;
     const LayerPlan& plan;
-    /// What surfaces emit, to be taken away: the same scene without lamps, with the same layers.
+    /// The emission of surfaces, to be subtracted: the same scene without lamps, with the same
+    /// layers.
     const Film* emitted = nullptr;
 };
 
-/// The layers that light_numbers reads, of an image: an argument of --layers.
+/// Returns the layers that light_numbers reads of an image: an argument of --layers.
 std::string layers_to_measure(const ImageScene& scene);
 
-/// Precondition: there are pixels, and all lie within the film's window, by whose rows they are
-/// counted.
+/// Computes the numbers of some pixels, whose indices count the film's window row by row.
+/// Precondition: there is a pixel, and all lie within the window.
 LightNumbers light_numbers(const MeasuredImage& image, std::span<const std::size_t> pixels);
 
-/// Some pixels of an image, by their index within its window.
+/// Some pixels of an image, by their indices in its window.
 struct PicturePart {
     std::string name;
     std::vector<std::size_t> pixels;
@@ -173,15 +176,15 @@ struct PartNumbers {
     LightNumbers numbers;
 };
 
-/// The numbers of all light in an image that has the layers to measure.
+/// Computes the numbers of all light in an image that has the layers to measure.
 std::vector<PartNumbers> part_numbers(const MeasuredImage& image,
                                       const std::vector<PicturePart>& parts,
                                       const std::string& lamp = {});
 
-/// The numbers of each lamp's light: `scene`, whose image the parts are of, is rendered again for
-/// each of its lamps alone, and once without any for what surfaces emit. `options` are those of the
-/// image; the layers in them do not matter. `begin` is called before each with its index, 0 to the
-/// number of lamps. Throws as Renderer.
+/// Computes the numbers of each lamp's light. Renders `scene`, to whose image the parts refer, with
+/// each of its lamps alone, and once without lamps for the emission of surfaces. `options` are
+/// those of the image; their layers do not matter. `begin` is called before each image with its
+/// index, 0 to the number of lamps. Throws as Renderer.
 std::vector<PartNumbers> lamp_numbers(Renderer& renderer, const ImageScene& scene,
                                       const RenderOptions& options,
                                       const std::vector<PicturePart>& parts,

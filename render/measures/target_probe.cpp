@@ -17,8 +17,8 @@ namespace {
 
 constexpr std::size_t k_max_kept = 10000;  // of about 1 KB each
 
-/// A camera whose pixels, few as they are, share out the part of the image in the middle. It stands
-/// where the scene's is at the image's moment.
+/// Returns a camera with few pixels, which cover the middle part of the image. Its pose is that of
+/// the scene's camera at the image's time.
 CameraDesc probe_camera(const CameraDesc& camera, const TargetOptions& options) {
     CameraDesc probe = camera;
     probe.trajectory.reset();
@@ -42,7 +42,7 @@ SceneDesc surrounding_of(const SceneDesc& scene, const TargetOptions& options) {
     probe.water.forward_scatter = {};
     probe.volumes = scene.volumes;
     probe.render.samples = 1;
-    // Exact, and for so few rays faster than splatting the lamp's light first.
+    // The reference integrator is exact and, for so few rays, faster than making deep shadow maps.
     probe.render.integrator = RenderDesc::Integrator::reference;
     return probe;
 }
@@ -54,7 +54,7 @@ bool is_same(const SceneDesc& a, const SceneDesc& b) {
            a.camera.world_from_camera == b.camera.world_from_camera;
 }
 
-/// White, so that its light is that of any reflectance when scaled.
+/// Returns a white target, whose light scales to that of any reflectance.
 GeometryDesc target_at(const CameraDesc& camera, double distance, std::size_t bands) {
     GeometryDesc target;
     target.type = GeometryDesc::Type::plane;
@@ -64,8 +64,8 @@ GeometryDesc target_at(const CameraDesc& camera, double distance, std::size_t ba
     return target;
 }
 
-/// The lamp with a radiant intensity of 1 W/sr on its axis in each band, where it is at the image's
-/// moment.
+/// Returns the lamp with a radiant intensity of 1 W/sr on its axis in each band, at its position at
+/// the image's time.
 LampDesc unit_lamp(const LampDesc& lamp, std::size_t bands) {
     LampDesc unit = lamp;
     unit.trajectory.reset();
@@ -96,7 +96,7 @@ std::string profile_key(const LampProfileDesc& profile) {
         profile);
 }
 
-/// All of a lamp but its brightness and name.
+/// Returns a key of all properties of a lamp but its brightness and name.
 std::string key_of(const LampDesc& lamp, double distance) {
     std::string key = fmt::format("{} {} {} {} {} {} {} {} ", distance, lamp.position.x,
                                   lamp.position.y, lamp.position.z, lamp.direction.x,
@@ -203,7 +203,7 @@ LampOnTarget TargetProbe::lamp_on_target(const ImageScene& scene, const LampDesc
         found = kept_.emplace(key, render(lamp, distance)).first;
     }
     if (lamp.is_of_scene()) return found->second;
-    std::vector<std::string> warnings;  // those of the scene's own picture
+    std::vector<std::string> warnings;  // the image of the scene has them, too
     const SceneDesc& desc = scene.desc();
     const Spectrum intensity =
         make_lamp(lamp, desc.camera.world_from_camera, desc.water.bands_nm, warnings)
@@ -231,8 +231,8 @@ std::vector<TargetNumbers> TargetProbe::curve(const ImageScene& scene,
 std::vector<double> target_distances(double nearest, double farthest, int count) {
     std::vector<double> distances;
     for (int i = 0; i < count; ++i) {
-        const double share = count > 1 ? static_cast<double>(i) / (count - 1) : 0;
-        distances.push_back(nearest * std::pow(farthest / nearest, share));
+        const double t = count > 1 ? static_cast<double>(i) / (count - 1) : 0;
+        distances.push_back(nearest * std::pow(farthest / nearest, t));
     }
     return distances;
 }

@@ -62,8 +62,8 @@ TEST(PictureNumbers, AreThoseOfEvenLayers) {
     EXPECT_DOUBLE_EQ(numbers.lost_to_water.value(), 0.75);
     EXPECT_EQ(numbers.evenness->pixels, 200U);
     EXPECT_DOUBLE_EQ(numbers.evenness->min_to_mean, 1);
-    EXPECT_EQ(measure_picture(layers, k_all, 2).share_above, 1);
-    EXPECT_EQ(measure_picture(layers, k_all, 2.001).share_above, 0);
+    EXPECT_EQ(measure_picture(layers, k_all, 2).fraction_above, 1);
+    EXPECT_EQ(measure_picture(layers, k_all, 2.001).fraction_above, 0);
 }
 
 TEST(PictureNumbers, OfLampsAreMixedByTheirGains) {
@@ -127,9 +127,9 @@ TEST(PictureNumbers, CountTheShareOfPixelsAboveARatio) {
     PictureLayers layers = picture();
     layers.signal = {signal.plane()};
     layers.backscatter = {veil.plane()};
-    EXPECT_DOUBLE_EQ(measure_picture(layers, k_all, 2.5).share_above, 15.0 / 20) << "x >= 5";
-    EXPECT_DOUBLE_EQ(measure_picture(layers, {10, 0, 20, 10}, 2.5).share_above, 1);
-    EXPECT_DOUBLE_EQ(measure_picture(layers, k_all, 0).share_above, 19.0 / 20)
+    EXPECT_DOUBLE_EQ(measure_picture(layers, k_all, 2.5).fraction_above, 15.0 / 20) << "x >= 5";
+    EXPECT_DOUBLE_EQ(measure_picture(layers, {10, 0, 20, 10}, 2.5).fraction_above, 1);
+    EXPECT_DOUBLE_EQ(measure_picture(layers, k_all, 0).fraction_above, 19.0 / 20)
         << "without signal nothing is seen";
 }
 
