@@ -22,40 +22,40 @@
 
 namespace uw {
 
-/// The light of every emitter of a scene, in their order.
+/// The deep shadow maps of the emitters of a scene, in their order.
 using DeepShadows = std::vector<std::shared_ptr<const DeepShadow>>;
 
-/// A scene description turned into the concrete parts that integrators work on.
+/// The parts of a scene that integrators work on, made from its description.
 struct AssembledScene {
     explicit AssembledScene(ImageScene of) : image(std::move(of)) {}
 
-    ImageScene image;  // what it was made from
+    ImageScene image;  // the scene from which it was made
     std::unique_ptr<Camera> camera;
-    WaterModel water;                                    // its coefficients hold the snow's mean
-    std::shared_ptr<const ScatteringTables> scattering;  // of the water; null: not made
-    std::shared_ptr<const SnowModel> snow;               // null: there is none
+    WaterModel water;                                    // its coefficients include the snow's mean
+    std::shared_ptr<const ScatteringTables> scattering;  // of the water; null: not made yet
+    std::shared_ptr<const SnowModel> snow;               // null without snow
     std::shared_ptr<const ConcentrationField> field;
     std::shared_ptr<const Surfaces> surfaces;
-    /// The same as far as it casts shadows: below calm water and a black sky, so that it is the
-    /// same object while waves move and the sky brightens.
+    /// The surfaces for shadows, below calm water and a black sky, so that it is the same object
+    /// while waves move and the sky changes.
     std::shared_ptr<const Surfaces> shadow_casters;
-    std::optional<Sky> sky;                     // above the water; none: it is black
-    std::optional<WaterSurface> water_surface;  // which reflects; none: the water has no end
-    /// With it, the field and its mirror image above (SubmergedField).
+    std::optional<Sky> sky;                     // above the water; none: black
+    std::optional<WaterSurface> water_surface;  // reflects; none: the water is unbounded
+    /// The field and its mirror image above the water surface, if there is one (SubmergedField).
     std::shared_ptr<const ConcentrationField> field_with_image;
-    /// How waves focus each sun, by its lamp's index; null: they do not.
+    /// The focusing of each sun by waves, by the lamp's index; null without focusing.
     std::vector<std::shared_ptr<const SunFocus>> sun_foci;
-    std::vector<Lamp> lamps;                 // as the description has them, each at its centre
-    std::vector<Lamp> emitters;              // the points that they consist of (LitScene::emitters)
+    std::vector<Lamp> lamps;     // those of the description, each as a point at its centre
+    std::vector<Lamp> emitters;  // the points that represent them (LitScene::emitters)
     std::vector<LampSurface> lamp_surfaces;  // of those with an extent
-    std::vector<SceneEmission> emissions;    // those that are the light of volumes
-    std::optional<Slabs> slabs;              // none: they have not been placed (place_slabs)
-    /// The samples of a part of an exposure (render/exposure.h); 0: all of it.
+    std::vector<SceneEmission> emissions;    // those of emissive volumes
+    std::optional<Slabs> slabs;              // none: not placed yet (place_slabs)
+    /// The samples of a part of an exposure (render/exposure.h); 0 if the image is no part.
     int first_sample = 0, total_samples = 0;
     std::vector<VolumeReport> volume_reports;
-    std::vector<std::string> warnings;           // one line each, in the order met
-    std::vector<LoadedVolume> volumes;           // what `field` is made of
-    std::vector<std::string> geometry_warnings;  // those among `warnings` about surfaces
+    std::vector<std::string> warnings;           // one line each, in the order of their occurrence
+    std::vector<LoadedVolume> volumes;           // those of which `field` consists
+    std::vector<std::string> geometry_warnings;  // the warnings that are about surfaces
 
     const SceneDesc& desc() const { return image.desc(); }
     LitScene lit() const {

@@ -15,8 +15,8 @@ namespace uw {
 
 namespace {
 
-/// Where a row's exposure differs from another's, points on what moves would have to be looked for
-/// at many times.
+/// With a rolling shutter, points on moving surfaces would have to be found at the different times
+/// of the rows.
 void refuse_rolling_surfaces(const SceneDesc& scene) {
     const auto moves = [](const GeometryDesc& geometry) {
         return geometry.trajectory || geometry.animation;
@@ -29,7 +29,7 @@ void refuse_rolling_surfaces(const SceneDesc& scene) {
         scene.camera.where, entry->where));
 }
 
-/// The frame `step` later, with an image of this one's size; none if there is none.
+/// Returns the frame `step` later, with an image of the same size; none if there is no such frame.
 std::optional<ImageScene> neighbour(const ImageScene& scene, int step) {
     const std::optional<ImageScene> other = scene.neighbour(step);
     if (!other) return std::nullopt;

@@ -10,17 +10,17 @@
 
 namespace uw {
 
-/// Where the points of an image are in the next and the previous frame and in another camera of the
-/// rig, as far as layers about that are in the image.
+/// Finds the points of an image in the next and the previous frame and in another camera of the
+/// rig, as far as the image's layers require it.
 ///
-/// Neighbours are the frames with the numbers one higher and one lower, made of the scene as it was
-/// read (ImageScene::whole). There is none before frame 0 and where a trajectory has no pose. Of a
-/// rig the other camera is the second for the first, and the first for all others.
+/// Neighbours are the next and the previous frame, made from the scene as it was read
+/// (ImageScene::whole). There is none before frame 0 and where a trajectory has no pose. The other
+/// camera of a rig is the second one for the first camera, and the first one for all others.
 class Correspondences {
   public:
-    /// `scene` outlives this. Surfaces of the next frame are `scene`'s if nothing of them moves,
-    /// else those that `cache` keeps ahead. Throws as ImageScene, build_surfaces and
-    /// object_motions.
+    /// `scene` must outlive this object. The surfaces of the next frame are those of `scene` if
+    /// none of them moves; otherwise `cache` builds them ahead. Throws as ImageScene,
+    /// build_surfaces and object_motions.
     Correspondences(const AssembledScene& scene, const LayerPlan& plan, SceneCache& cache);
 
     PointMatchers matchers() const;

@@ -33,7 +33,7 @@ std::string names_by_number(const NameList& list) {
     return text + "}";
 }
 
-// RFC 4180, on one line.
+// Returns a field of a CSV file (RFC 4180), on one line.
 std::string csv_field(const std::string& text) {
     const std::string line = printable(text, k_longest_name);
     if (line.find_first_of(",\"") == std::string::npos) return line;
@@ -102,7 +102,7 @@ std::string band_list(std::span<const double> values) {
     return text;
 }
 
-// The first three rows of the 4 x 4 matrix, the last being 0 0 0 1.
+// Returns the first three rows of the 4 x 4 matrix, whose last row is 0 0 0 1.
 std::string matrix_rows(const Affine& pose) {
     std::string text;
     for (int row = 0; row < 3; ++row)
@@ -179,7 +179,8 @@ ImageMetadata metadata_of(const ImageScene& image, std::optional<int> frame,
         m["uwvdb/port_radiance_in"] = std::string(port.radiance_in_air ? "air" : "water");
     };
     if (scene.camera.port) std::visit(note_port, *scene.camera.port);
-    // Of rays and ground truth: light of other wavelengths goes other ways.
+    // The wavelength of rays and ground truth: the port refracts light of other wavelengths
+    // differently.
     if (disperses(scene.camera)) m["uwvdb/wavelength_nm"] = scene.camera.wavelength_nm;
     if (const auto& lens = scene.camera.lens) {
         m["uwvdb/lens_f_number"] = lens->f_number;

@@ -13,13 +13,13 @@
 
 namespace uw {
 
-/// Whether --layers asks for numbers that stand for names: `id` or `material`.
+/// Whether --layers requests a layer of numbers that stand for names: `id` or `material`.
 bool requests_ids(std::string_view layers);
 
-/// The table's file beside an image: "out_ids.csv" beside "out.exr".
+/// Returns the file of the table of ids of an image: "out_ids.csv" for "out.exr".
 std::filesystem::path id_table_beside(const std::filesystem::path& image);
 
-/// Adds what the numbers of those layers stand for to an image's header: `uwvdb/id_names` and
+/// Adds the names behind the numbers of those layers to an image's header: `uwvdb/id_names` and
 /// `uwvdb/material_names`, JSON objects of names by number.
 void add_id_names(const SurfaceNames& names, ImageMetadata& metadata);
 
@@ -28,16 +28,16 @@ void add_id_names(const SurfaceNames& names, ImageMetadata& metadata);
 void add_matte_manifests(const SurfaceNames& names, const std::vector<std::string>& channel_names,
                          ImageMetadata& metadata);
 
-/// Writes the ids' names as a CSV: layer, number, name, and the entry of `geometry` it comes from.
-/// What cannot be written is for out.commit() to report.
+/// Writes the names of ids as a CSV: layer, number, name, and the entry of `geometry` of the
+/// object. out.commit() reports errors of writing.
 void write_id_table(OutputFile& out, const SurfaceNames& names);
 
-/// The part of an image's header that follows from the scene's description alone: images of the
-/// same scene, frame, request and program have the same.
+/// Returns the part of an image's header that follows from the scene's description alone; it is the
+/// same for images of the same scene, frame, request and program.
 ImageMetadata metadata_of(const ImageScene& image, std::optional<int> frame,
                           const PathRequest& paths = {});
 
-/// The whole header of an image; `report` is about it.
+/// Returns the whole header of an image, whose report is `report`.
 ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
                           const PathRequest& paths = {}, const RenderReport& report = {});
 

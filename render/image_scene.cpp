@@ -19,7 +19,8 @@ namespace uw {
 
 namespace {
 
-// Times of frames and of files are rounded decimals: a frame may be this much outside [s].
+// Times of frames and of files are rounded decimals, so that a frame may lie outside of them by
+// this much [s].
 constexpr double k_time_tolerance = 1e-6;
 constexpr double k_always = std::numeric_limits<double>::infinity();
 
@@ -33,13 +34,13 @@ void for_each_trajectory(const SceneDesc& scene,
         if (geometry.trajectory) take(*geometry.trajectory);
 }
 
-// The trajectory whose poses are the frames, where they are.
+// Returns the trajectory whose poses are the frames, if frames are poses.
 const Trajectory& trajectory_of_frames(const SceneDesc& scene) {
     return scene.rig_trajectory ? *scene.rig_trajectory->trajectory
                                 : *scene.camera.trajectory->trajectory;
 }
 
-/// When everything that has a trajectory has a pose.
+/// Returns the times at which everything that has a trajectory has a pose.
 TimeRange common_times(const SceneDesc& scene) {
     TimeRange range{-k_always, k_always};
     for_each_trajectory(scene, [&](const TrajectoryDesc& desc) {
@@ -49,7 +50,7 @@ TimeRange common_times(const SceneDesc& scene) {
     return range;
 }
 
-/// When some file's nodes move.
+/// Returns the times at which the nodes of some file move.
 TimeRange animated_times(const SceneDesc& scene) {
     TimeRange range{k_always, -k_always};
     for (const GeometryDesc& geometry : scene.geometry) {
@@ -97,7 +98,7 @@ Affine pose_at(const TrajectoryDesc& desc, double time, const SceneDesc& scene,
                           : ""));
 }
 
-/// Sets all poses to those at `time` that `pose_of` gives their trajectories.
+/// Sets all poses to those at `time`, which `pose_of` returns for their trajectories.
 void move_all(SceneDesc& scene, double time,
               const std::function<Affine(const TrajectoryDesc&)>& pose_of) {
     if (scene.camera.trajectory) scene.camera.world_from_camera = pose_of(*scene.camera.trajectory);
@@ -185,7 +186,7 @@ void choose_file(auto& input, int frame) {
     input.is_sequence = false;
 }
 
-// Sets camera and files; a scene without a choice of either keeps its own.
+// Sets the chosen camera and files; without a choice, those of the scene stay.
 void choose(SceneDesc& scene, const ImageChoice& choice) {
     if (!scene.cameras.empty()) {
         scene.camera = scene.cameras[choice.camera].camera;
@@ -202,7 +203,7 @@ std::optional<double> moment_of(const SceneDesc& whole, const ImageChoice& choic
     return choice.frame ? time_of_frame(whole, *choice.frame) : first_time(whole);
 }
 
-/// What an image shows, but for what glTF files bring.
+/// Returns the scene that an image shows, without the parts of glTF files.
 SceneDesc chosen(const SceneDesc& whole, const ImageChoice& choice) {
     SceneDesc scene = whole;
     choose(scene, choice);
@@ -226,7 +227,9 @@ VolumeDesc volume_of_frame(VolumeDesc volume, int frame) {
 Affine world_from_camera(const SceneDesc& whole, const ImageChoice& choice) {
     const SceneDesc scene = chosen(whole, choice);
     if (scene.camera.has_pose) return scene.camera.world_from_camera;
-    return scene_of_image(whole, choice).desc().camera.world_from_camera;  // a glTF file's
+    return scene_of_image(whole, choice)
+        .desc()
+        .camera.world_from_camera;  // the camera is from a glTF file
 }
 
 void check_moment(const SceneDesc& whole, const ImageChoice& choice) {

@@ -21,7 +21,7 @@ namespace uw {
 
 namespace {
 
-// A stated standard error that final images should not exceed, relative to their mean.
+// Estimated standard error above which final images come with a warning, relative to their mean.
 constexpr double k_max_multiple_error = 0.03;
 
 PixelWindow whole_image(const CameraDesc& camera) {
@@ -36,14 +36,14 @@ void check_window(const PixelWindow& window, const CameraDesc& camera) {
                                      camera.height));
 }
 
-/// What to say of an image in which no pixel of the sensor tells anything.
+/// Returns a warning if every pixel of the sensor is saturated.
 std::optional<std::string> saturation_warning(const CameraDesc& camera, const LayerPlan& plan,
                                               Film& film) {
     if (!camera.sensor || !plan.has(Layer::sensor)) return std::nullopt;
     const SensorDesc& sensor = *camera.sensor;
     double least = sensor.white_level();
     if (sensor.full_well) {
-        // The number of a full well scatters by what reading it adds, and is rounded.
+        // The digital number of a full well varies by the noise of reading it, and is rounded.
         constexpr double k_deviations = 5, k_rounding = 0.5;
         const double gain = sensor.system_gain();
         const double added = gain * std::hypot(sensor.read_noise, sensor.dsnu);
@@ -89,7 +89,8 @@ const AssembledScene& Renderer::assemble() {
     return *scene_;
 }
 
-// At the resolution of the scene that was set, of which `scene` may be a part of the exposure.
+// Uses the resolution for the scene that was set, although `scene` may be that of a part of its
+// exposure.
 DeepShadows Renderer::light_of(const AssembledScene& scene, const ProgressCallback& progress) {
     DeepShadows light = cache_.light(
         scene, deep_shadow_options(scene_->desc().render.quality, scene_->water.medium), progress);
@@ -121,7 +122,7 @@ std::optional<LightLeftOut> Renderer::light_left_out() {
 void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
     assemble();
     light_.clear();
-    scene_->scattering = nullptr;  // of the water as it was
+    scene_->scattering = nullptr;  // those of the unchanged water
     change(*scene_);
     image_ = scene_->image;
 }
@@ -170,8 +171,8 @@ void Renderer::prepare(const RenderOptions& options) {
 
 void Renderer::count_work() {
     const auto samples = static_cast<std::uint64_t>(samples_of(scene_->desc().render));
-    // One ray per sample, and one more for the pixel's centre unless that is the sample: its water
-    // and ground truth.
+    // One ray per sample, and one more through the pixel's centre, for in-scattering and ground
+    // truth, unless that is the only sample.
     report_.camera_rays = report_.pixels * (samples == 1 ? 1 : samples + 1);
     if (report_.paths.samples > 0)
         report_.camera_rays = report_.pixels * static_cast<std::uint64_t>(report_.paths.samples);
@@ -228,8 +229,8 @@ void Renderer::render_light(const Exposure& exposure, const AssembledScene& scen
         rendering);
 }
 
-// Light that has its own way through the glass: each group is an image by itself, of whose bands
-// the film takes the light. Everything but the camera is that of the first.
+// Renders the groups of bands whose rays the port refracts differently. Each is an image by itself,
+// whose bands are copied to the film. Everything but the camera is that of the first group.
 void Renderer::render_other_groups(std::span<const ColourGroup> groups,
                                    const RenderOptions& options, PassList& passes) {
     for (std::size_t k = 1; k < groups.size(); ++k) {
@@ -305,7 +306,7 @@ const Film& Renderer::render(const RenderOptions& options) {
     else
         begin("splat");
     is_film_clear_ = false;
-    PassList passes = std::exchange(passes_, {});  // what they hold is freed with them
+    PassList passes = std::exchange(passes_, {});  // frees their memory at the end
     render_film(options, passes);
     warn_of_error(options.paths);
     warn_of_multiple_error();

@@ -18,101 +18,106 @@
 
 namespace uw {
 
-/// What is requested of one image beyond what its scene says.
+/// Options of one image that its scene does not determine.
 struct RenderOptions {
-    std::string layers{};                       // as LayerPlan takes them; empty: the default set
-    std::optional<PixelWindow> window{};        // the pixels wanted; none: the whole image
-    PathRequest paths{};                        // of its light paths
-    std::int64_t frame = 0;                     // number, on which the sensor's noise depends
+    std::string layers{};                 // the request of a LayerPlan; empty: the default set
+    std::optional<PixelWindow> window{};  // the requested pixels; none: the whole image
+    PathRequest paths{};                  // of its light paths
+    std::int64_t frame = 0;               // its number, on which the sensor's noise depends
     const LightTransport* transport = nullptr;  // instead of the scene's; not owned
 };
 
-/// What an image was made of, and the warnings about it.
+/// Statistics of an image, and the warnings about it.
 struct RenderReport : ImageProgress {
-    /// About the scene, then about the image: one line each, in the order met.
+    /// Warnings about the scene, then about the image: one line each, in the order of their
+    /// occurrence.
     std::vector<std::string> warnings;
-    /// What its light lacks (left_out_note), one line, set by those who ask; empty: little.
+    /// Note on the light that the image leaves out (left_out_note), one line, set by callers that
+    /// ask for it; empty: little.
     std::string light_note;
-    std::uint64_t pixels = 0;  // rendered: with forward scatter always the whole image
+    std::uint64_t pixels = 0;  // pixels rendered: with forward scatter, always the whole image
     std::uint64_t camera_rays = 0;
-    std::uint64_t splat_rays = 0;     // traced for light not kept from the last image
-    std::uint64_t light_bytes = 0;    // of all lamps' light
+    std::uint64_t splat_rays = 0;     // for deep shadow maps that were not kept from the last image
+    std::uint64_t light_bytes = 0;    // of all deep shadow maps
     std::uint64_t active_voxels = 0;  // of all grids
     std::uint64_t grid_bytes = 0;
     std::uint64_t triangles = 0, lamps = 0, bands = 0;
-    /// Where something moves during the exposure: its parts (Exposure), the samples per pixel of
-    /// all of them, and how far it moves in the image, at most [pixels]. 0: nothing moves.
+    /// If something moves during the exposure: the number of its parts (Exposure), the samples per
+    /// pixel of all of them, and the maximum motion in the image [pixels]; 0 if nothing moves.
     std::uint64_t exposure_parts = 0, exposure_samples = 0;
     double motion_pixels = 0;
-    /// Groups of bands with rays of their own (ColourGroup), each an image that was rendered.
+    /// The number of groups of bands with rays of their own (ColourGroup), each of which is
+    /// rendered as an image.
     std::uint64_t colour_groups = 1;
 };
 
-/// Renders images of scenes: the only path from a scene description to pixels.
+/// Renders images of scenes. No other class turns scene descriptions into pixels.
 ///
 ///     Renderer renderer;
 ///     renderer.set_scene(load_scene("scene.yaml", {}));
 ///     write_exr("image.exr", renderer.render(), {});
 ///
-/// Water, volumes, surfaces and light are kept from one image to the next as far as they and their
-/// files are unchanged (SceneCache); every image is the same to the bit as from a new renderer. It
-/// neither prints nor ends the program. Faults in files are an InputError or IoError, in options a
-/// UsageError.
+/// Water, volumes, surfaces and deep shadow maps are kept from one image to the next if they and
+/// their files have not changed (SceneCache); every image is the same to the bit as from a new
+/// renderer. The renderer neither prints nor ends the program. Faults in files are an InputError or
+/// IoError, faults in options a UsageError.
 ///
-/// Stages, in this order: "volumes", "geometry", "splat", and those of the image's passes
+/// The stages are, in this order, "volumes", "geometry", "splat", and those of the image's passes
 /// (make_passes): "multiple scattering" if the integrator volume renders it, "snow" if there is
-/// some, "render" and, with forward scatter, "forward scatter". `progress` receives each with 0
-/// before it begins, on the calling thread. After Interrupted, or what `progress` throws, the
+/// some, "render" and, with forward scatter, "forward scatter". `progress` receives each stage with
+/// 0 before it begins, on the calling thread. After Interrupted, or an exception of `progress`, the
 /// renderer stays usable, and the same image can be requested again.
 class Renderer {
   public:
     explicit Renderer(StageProgressCallback progress = [](const std::string&, double) {})
         : progress_(std::move(progress)) {}
 
-    /// Sets the scene of the images to come. Loads nothing yet.
+    /// Sets the scene of the following images. Loads nothing yet.
     void set_scene(ImageScene scene);
-    /// As it was set, or edited since. Precondition of this and all that follows: it was set.
+    /// The scene as it was set, or edited since. Precondition of this and all following functions:
+    /// a scene was set.
     const ImageScene& scene() const { return *image_; }
 
-    /// Allocates an image and assembles its scene: then the report has its warnings and its pixels.
-    /// render() does so itself; call this to learn of them beforehand.
+    /// Allocates an image and assembles its scene, after which the report has its warnings and its
+    /// number of pixels. render() does so itself; call this to know them beforehand.
     void prepare(const RenderOptions& options = {});
 
-    /// Renders the image. The film belongs to the renderer and stays as it is until the next image
-    /// is prepared, which reuses its memory. Throws as require_memory;
-    /// UsageError for a window that is not within the image, and as layer_plan.
+    /// Renders the image. The film belongs to the renderer and is valid until the next image is
+    /// prepared, which reuses its memory. Throws as require_memory; UsageError for a window that is
+    /// not within the image, and as layer_plan.
     const Film& render(const RenderOptions& options = {});
 
-    /// The film that render() returned last, for those who keep it: the next image gets memory of
-    /// its own. Precondition: nothing has been prepared since.
+    /// Releases the film that render() returned last; the next image gets memory of its own.
+    /// Precondition: nothing has been prepared since.
     Film release_film();
 
-    /// About the image that was prepared or rendered last.
+    /// The report on the image that was prepared or rendered last.
     const RenderReport& report() const { return report_; }
 
-    /// @name What images are made of, for closer inspection
-    /// References to them are valid until the scene is set or edited again.
-    /// @{
+    /// @name The parts of an image's scene, for closer inspection References to them are valid
+    /// until the scene is set or edited again. @{
 
-    /// Loads and builds the scene and places its slabs, as far as that has not been done.
+    /// Loads and builds the scene and places its slabs, unless that has been done.
     const AssembledScene& assemble();
-    /// Likewise the light of its lamps, at the resolution that its quality requires. For an
-    /// integrator that needs no light, forward scatter takes the columns from it if it is there.
+    /// Makes the deep shadow maps of its lamps, at the resolution that its quality requires, unless
+    /// that has been done. For an integrator that does not need them, forward scatter takes columns
+    /// from them if they exist.
     const DeepShadows& splat();
-    /// The light transport of the scene's integrator, with its light if it needs any.
+    /// Makes the light transport of the scene's integrator, with deep shadow maps if it needs them.
     LightTransport make_transport();
 
-    /// What assemble() and splat() returned last. Precondition: they have been called.
+    /// The results of the last assemble() and splat(). Precondition: they have been called.
     const AssembledScene& assembled() const { return *scene_; }
     const DeepShadows& light() const { return light_; }
 
-    /// What an image of this scene leaves out (estimate_light_left_out); assembles it.
+    /// Estimates the light that an image of this scene leaves out (estimate_light_left_out);
+    /// assembles the scene.
     std::optional<LightLeftOut> light_left_out();
 
-    /// Changes the assembled scene by hand: for water, volumes and slabs that no description can
-    /// express. The next scene that is set has nothing of it.
+    /// Changes the assembled scene directly, for water, volumes and slabs that no description can
+    /// express. The next scene that is set is not affected.
     void edit(const std::function<void(AssembledScene&)>& change);
-    /// Frees the light: the next splat makes all of it anew.
+    /// Frees the deep shadow maps: the next splat makes all of them anew.
     void drop_light();
     /// @}
 
@@ -132,19 +137,19 @@ class Renderer {
     DeepShadows light_of(const AssembledScene& scene, const ProgressCallback& progress);
 
     StageProgressCallback progress_;
-    std::optional<ImageScene> image_;      // as it was set
-    std::optional<AssembledScene> scene_;  // none: it has not been assembled
+    std::optional<ImageScene> image_;      // the scene that was set
+    std::optional<AssembledScene> scene_;  // none: not assembled yet
     SceneCache cache_;
-    DeepShadows light_;             // of the scene; empty: not splatted
-    std::uint64_t splat_rays_ = 0;  // since the last image
+    DeepShadows light_;             // of the scene; empty: not made yet
+    std::uint64_t splat_rays_ = 0;  // traced since the last image
     std::optional<LayerPlan> plan_;
-    std::optional<BandColour> colour_;  // of the scene; none: not looked up
-    PassList passes_;                   // of the image that was prepared, until it is rendered
+    std::optional<BandColour> colour_;  // of the scene; none: not made yet
+    PassList passes_;                   // of the prepared image, until it is rendered
     PassNeeds needs_;                   // of these
-    PixelWindow window_;                // wanted of the image
-    std::optional<Film> film_;          // of what is rendered
+    PixelWindow window_;                // the requested one
+    std::optional<Film> film_;          // of the rendered window
     bool is_film_clear_ = false;
-    std::optional<Film> cropped_;  // what is wanted of it, if that is less
+    std::optional<Film> cropped_;  // the requested part of it, if that is smaller
     RenderReport report_;
 };
 

@@ -23,14 +23,14 @@ namespace uw {
 
 namespace {
 
-// Drafts make do with a quarter of the points of lamps with an extent.
+// Drafts use a quarter of the points of lamps with an extent.
 constexpr int k_draft_thinning = 4;
 
 void append(std::vector<std::string>& to, const std::vector<std::string>& from) {
     to.insert(to.end(), from.begin(), from.end());
 }
 
-// In-scatter from a lamp at the origin of the camera's rays has no bound (1/r^2).
+// In-scattered light from a lamp at the origin of the camera's rays diverges (1/r^2).
 void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
     const CameraDesc& camera = desc.camera;
     const std::optional<Ray> ray =
@@ -82,7 +82,7 @@ void report_volumes(AssembledScene& scene) {
     }
 }
 
-// Precondition: the scene's emissions are there.
+// Precondition: the scene's emissions were made.
 void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
     const int thinning = desc.render.quality == RenderDesc::Quality::draft ? k_draft_thinning : 1;
     auto emissive = scene.emissions.begin();
@@ -107,7 +107,7 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
                                         scene.water.medium.wavelengths_nm, scene.warnings));
         const std::size_t index = scene.lamps.size() - 1;
         if (index < scene.sun_foci.size() && scene.sun_foci[index]) {
-            // The disc is in the map already.
+            // The sun's disc is in the map already.
             scene.emitters.push_back(
                 scene.lamps.back()
                     .emitter(index, scene.lamps.back().sunlight()->direction, 1)
@@ -131,7 +131,7 @@ SeenSky seen_sky(const std::optional<Sky>& sky, const SceneDesc& desc) {
             static_cast<std::size_t>(lamp - desc.lamps.begin())};
 }
 
-// Where the water's surface reflects, light meets it.
+// Adds the water's surface to the surfaces and the field, if it reflects.
 void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
     const std::optional<WaterSurfaceDesc>& surface = desc.water.surface;
     if (!surface || !surface->n) return;
@@ -149,7 +149,8 @@ void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
     scene.field_with_image = parts.field_with_image;
 }
 
-// The water that maps of caustics hold: a tile of the sea, else around the camera.
+// Returns the extent of the maps of caustics: a tile of the sea or, without one, a square around
+// the camera.
 SunFocus::Extent extent_of_focus(const SceneDesc& desc, const AssembledScene& scene) {
     constexpr double k_side = 32, k_min_depth = 2, k_margin = 1.2;
     const WaterSurface& surface = *scene.water_surface;
@@ -339,7 +340,7 @@ namespace {
 
 constexpr int k_columns = 16, k_rows = 12;  // rays over the image
 
-/// What the camera sees, at a lattice of rays.
+/// Returns the surfaces that a lattice of the camera's rays hits.
 std::vector<SurfaceHit> surfaces_in_view(const AssembledScene& scene) {
     std::vector<SurfaceHit> hits;
     for (int j = 0; j < k_rows; ++j) {
@@ -356,8 +357,8 @@ std::vector<SurfaceHit> surfaces_in_view(const AssembledScene& scene) {
 
 bool lights(const AssembledScene& scene, const Lamp& lamp, const SurfaceHit& hit) {
     const Point3 from = lamp.origin(hit.position);
-    const Vector3 way = hit.position - from;
-    return glm::dot(way, hit.normal) < 0 && lamp.relative_intensity(way) > 0 &&
+    const Vector3 from_lamp = hit.position - from;
+    return glm::dot(from_lamp, hit.normal) < 0 && lamp.relative_intensity(from_lamp) > 0 &&
            !scene.surfaces->occluded(from, hit.position);
 }
 
@@ -375,7 +376,8 @@ std::optional<double> depth_of_nearest_lamp(const AssembledScene& scene) {
             if (lamp.axis_intensity()[band] > 0)
                 clearest = std::min(clearest,
                                     attenuation.optical_depth(band, distance(from, to), columns));
-        if (clearest < k_far) nearest = std::min(nearest.value_or(k_far), clearest);  // or dark
+        if (clearest < k_far)
+            nearest = std::min(nearest.value_or(k_far), clearest);  // otherwise, the lamp is dark
     };
     const std::vector<SurfaceHit> hits = surfaces_in_view(scene);
     const Point3 camera = at_origin_plus(scene.camera->world_from_camera().offset());

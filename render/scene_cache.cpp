@@ -16,7 +16,8 @@ namespace uw {
 
 namespace {
 
-/// Those that the water is read from, and the phase functions of what is in the volumes.
+/// Returns the stamps of the files from which the water is read, and the phase functions of the
+/// volumes' constituents.
 FileStamps files_of_water(const SceneDesc& scene) {
     std::vector<std::filesystem::path> files;
     for (const NamedFile& named : scene.files)
@@ -48,7 +49,7 @@ std::vector<std::filesystem::path> files_of(const VolumeDesc& volume) {
 
 }  // namespace
 
-// The volumes' files do not matter for the water, what their grids mean does.
+// The water does not depend on the volumes' files, but on the meaning of their grids.
 bool SceneCache::KeptWater::is_of(const SceneDesc& scene) const {
     return desc == scene.water && files.are_current() &&
            std::ranges::equal(grids, scene.volumes, {}, {}, &VolumeDesc::grids);
@@ -159,7 +160,7 @@ SceneCache::KeptSurfaces SceneCache::build(const SceneDesc& scene) {
     return built;
 }
 
-// The scene's geometry with the surfaces of level sets as meshes in memory.
+// Returns the scene's geometry with the surfaces of level sets as meshes in memory.
 std::vector<GeometryDesc> SceneCache::with_level_sets(const SceneDesc& scene,
                                                       std::vector<std::string>& warnings) {
     std::vector<GeometryDesc> geometry = scene.geometry;
@@ -206,7 +207,8 @@ SurfaceSet SceneCache::surfaces_of_moment(const SceneDesc& then) {
     return set;
 }
 
-// An image of waves may have changed in the meantime; other waves change with time alone.
+// The file of an image of waves may have changed in the meantime; other waves change with time
+// alone.
 bool SceneCache::KeptWaterSurface::is_of(const WaterSurfaceDesc& desc, double at) const {
     if (calm != without_waves(desc) || waves.has_value() != (desc.waves != nullptr)) return false;
     return !waves || (time == at && *waves == *desc.waves &&
@@ -226,14 +228,14 @@ const WaterSurface& SceneCache::water_surface(const WaterSurfaceDesc& desc, doub
 std::shared_ptr<const SunFocus> SceneCache::sun_focus(const Vector3& direction, double angle,
                                                       const SunFocus::Extent& extent,
                                                       int resolution) {
-    constexpr std::size_t k_most = 4;  // maps of 50 MB
+    constexpr std::size_t k_max = 4;  // maps of 50 MB
     std::vector<KeptFocus>& foci = water_surface_.value().foci;
     const auto known = std::ranges::find_if(foci, [&](const KeptFocus& kept) {
         return kept.direction == direction && kept.angle == angle && kept.extent == extent &&
                kept.resolution == resolution;
     });
     if (known != foci.end()) return known->focus;
-    if (foci.size() == k_most) foci.erase(foci.begin());
+    if (foci.size() == k_max) foci.erase(foci.begin());
     foci.push_back({direction, angle, extent, resolution,
                     std::make_shared<const SunFocus>(water_surface_->surface, direction, angle,
                                                      extent, resolution)});

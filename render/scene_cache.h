@@ -22,7 +22,7 @@ namespace uw {
 /// The volumes of a scene, loaded.
 struct VolumeSet {
     std::vector<LoadedVolume> volumes;                // in the scene's order
-    std::shared_ptr<const ConcentrationField> field;  // what they are together
+    std::shared_ptr<const ConcentrationField> field;  // all volumes together
 };
 
 /// The surfaces of a scene, ready for ray tracing.
@@ -38,57 +38,59 @@ struct SubmergedParts {
     std::shared_ptr<const ConcentrationField> field, field_with_image;
 };
 
-/// What is loaded and built for one scene and may serve the next: water, volumes, surfaces and the
-/// light of lamps. What is asked for is made, unless what is kept was made of the same description
-/// and of files that have not changed since (FileStamps); both are the same to the bit. The
-/// volumes and surfaces of the last scene are kept, and no earlier ones.
+/// Caches the parts of a scene that the next scene may reuse: water, volumes, surfaces and deep
+/// shadow maps. A part is made when it is requested, unless the cached one was made from the same
+/// description and from files that have not changed since (FileStamps); both are the same to the
+/// bit. Only the volumes and surfaces of the last scene are kept.
 class SceneCache {
   public:
-    /// The water of a scene. Throws as build_water_model, to which `progress` goes.
+    /// The water of a scene. Throws as build_water_model, which receives `progress`.
     const WaterModel& water(const SceneDesc& scene, const ProgressCallback& progress = {});
-    /// What light paths look up of the water asked for last.
+    /// The tables for light paths in the water that was requested last.
     const std::shared_ptr<const ScatteringTables>& scattering() const { return water_->scattering; }
 
-    /// Frees the volumes and surfaces that a scene in this water has no use for, so that there is
-    /// memory for those that it has.
+    /// Frees the volumes and surfaces that a scene in this water does not use, so that there is
+    /// memory for its own.
     void keep_only(const SceneDesc& scene, const WaterModel& water);
 
     /// The volumes of a scene in this water. Throws as load_volume.
     VolumeSet volumes(const SceneDesc& scene, const WaterModel& water);
 
-    /// The light of a scene's volumes, of those lamps that are such, in their order. Appends
-    /// warnings of one line each. Throws as load_volume and Emission.
+    /// The emission of a scene's volumes, for those lamps that are emissive volumes, in their
+    /// order. Appends warnings, one line each. Throws as load_volume and Emission.
     std::vector<SceneEmission> emissions(const SceneDesc& scene,
                                          std::vector<std::string>& warnings);
 
-    /// The surfaces of a scene. Throws as build_surfaces, and so do the next two.
+    /// The surfaces of a scene. This and the next two functions throw as build_surfaces.
     const SurfaceSet& surfaces(const SceneDesc& scene);
-    /// The surfaces of a scene that comes next. They are kept beside the last scene's until that
-    /// scene is asked for, or until others are built ahead.
+    /// The surfaces of the next scene. They are kept in addition to those of the last scene until
+    /// that next scene is requested, or until others are built ahead.
     const SurfaceSet& surfaces_ahead(const SceneDesc& next);
-    /// The surfaces of a moment of an exposure. They are not kept, but the meshes of their files
+    /// The surfaces at one time of an exposure. They are not kept, but the meshes of their files
     /// are.
     SurfaceSet surfaces_of_moment(const SceneDesc& then);
 
-    /// A water surface that reflects, at a moment [s].
+    /// A reflecting water surface at a `time` [s].
     const WaterSurface& water_surface(const WaterSurfaceDesc& desc, double time);
-    /// How the waves of the surface asked for last focus a sun: the arguments of SunFocus.
+    /// How the waves of the surface that was requested last focus a sun. The arguments are those of
+    /// SunFocus.
     std::shared_ptr<const SunFocus> sun_focus(const Vector3& direction, double angle,
                                               const SunFocus::Extent& extent, int resolution);
-    /// What is below that surface, calm: the same objects if it is asked for again.
+    /// The surfaces and field below that surface when it is calm; the same objects if they are
+    /// requested again.
     const SubmergedParts& submerged(const WaterSurfaceDesc& desc,
                                     const std::shared_ptr<const Surfaces>& surfaces,
                                     const std::shared_ptr<const ConcentrationField>& field);
 
-    /// The light of a scene's lamps (LightSplatter::splat).
+    /// The deep shadow maps of a scene's lamps (LightSplatter::splat).
     DeepShadows light(
         const AssembledScene& scene, const DeepShadowOptions& options,
         const ProgressCallback& progress = [](double) {}) {
         return splatter_.splat(scene, options, progress);
     }
-    /// Frees the light: what is asked for next is made anew.
+    /// Frees the deep shadow maps: the next ones are made anew.
     void drop_light() { splatter_ = {}; }
-    /// What was made for the light asked for last.
+    /// The maps made for the light that was requested last.
     const SplatCounts& splat_counts() const { return splatter_.counts(); }
 
   private:
@@ -105,12 +107,12 @@ class SceneCache {
         VolumeDesc desc;
         std::vector<std::vector<GridLoad>> loads;
         FileStamps files{};
-        std::optional<LoadedVolume> volume{};  // none: it has not been loaded
+        std::optional<LoadedVolume> volume{};  // none: not loaded yet
 
         bool is_of(const VolumeDesc& other, const std::vector<std::vector<GridLoad>>& its) const;
     };
     struct KeptEmission {
-        VolumeDesc desc;  // its one light is what emissions
+        VolumeDesc desc;  // with a single entry of `emission`
         std::vector<double> bands_nm;
         FileStamps files;
         std::shared_ptr<const EmissiveVolume> volume;
@@ -145,7 +147,7 @@ class SceneCache {
         std::optional<WavesDesc> waves;
         double time;
         WaterSurface surface;
-        std::vector<KeptFocus> foci{};  // of as many suns as one scene has
+        std::vector<KeptFocus> foci{};  // of the suns of one scene
 
         bool is_of(const WaterSurfaceDesc& desc, double at) const;
     };
@@ -164,9 +166,9 @@ class SceneCache {
     std::optional<KeptWater> water_;
     std::vector<KeptVolume> volumes_;
     std::vector<KeptEmission> emissions_;
-    std::shared_ptr<const ConcentrationField> field_;  // of `volumes_`; null: not made
+    std::shared_ptr<const ConcentrationField> field_;  // of `volumes_`; null: not made yet
     MeshStore meshes_;
-    std::vector<KeptLevelSet> level_sets_;  // of the scene built last
+    std::vector<KeptLevelSet> level_sets_;  // of the last scene
     std::optional<KeptSurfaces> surfaces_, ahead_;
     std::optional<KeptWaterSurface> water_surface_;
     std::optional<KeptSubmerged> submerged_;

@@ -43,7 +43,8 @@ void calibrate(CameraDesc& camera, SceneDesc& scene) {
     add_to_hash(calibration->hash, scene);
 }
 
-// Finds when a glTF file's nodes move, and warns if that is at other frames than the scene's.
+// Finds the times at which the nodes of a glTF file move, and warns if these are at other frames
+// than the scene's.
 void look_for_animation(GeometryDesc& geometry, SceneDesc& scene) {
     const auto keys = gltf_keys(geometry.file);
     if (!keys) return;
@@ -65,7 +66,7 @@ void set_in_motion(SceneDesc& scene) {
         std::string doubt;
         const std::string hash = load_trajectory(*desc, scene.render.fps, doubt);
         if (!hash.empty()) add_to_hash(hash, scene);
-        // Where frames are poses, frame n is right whatever the unit.
+        // If frames are poses, frame n is right, whatever the unit of time.
         if (!doubt.empty() && scene.render.times == RenderDesc::Times::fps)
             scene.warnings.push_back(fmt::format("{}.file: '{}': {}", desc->where,
                                                  printable(desc->file.string(), 300), doubt));
@@ -81,7 +82,8 @@ void set_in_motion(SceneDesc& scene) {
     }
 }
 
-// Warns of caches of another frame rate than the scene's, beside which all else would drift.
+// Warns of caches whose frame rate is not that of the scene, as everything else would move at
+// another speed.
 void compare_frame_rates(SceneDesc& scene) {
     if (!has_motion(scene) || scene.render.times != RenderDesc::Times::fps) return;
     for (const VolumeDesc& volume : scene.volumes) {
@@ -130,10 +132,10 @@ SceneDesc load_scene_text(std::string_view text, const std::filesystem::path& fi
 
 namespace {
 
-constexpr std::size_t k_longest_value = 80;    // in messages
-constexpr std::size_t k_longest_values = 300;  // likewise, of all of them
+constexpr std::size_t k_longest_value = 80;    // maximum length of a value in messages
+constexpr std::size_t k_longest_values = 300;  // maximum length of all values in messages
 
-/// Where a drawn value comes from, as the place of faults in it.
+/// Returns the origin of a drawn value, for messages about faults in it.
 std::string origin_of(const DrawnValue& value, int variation) {
     return fmt::format("{}: variation {}: {}", value.where, variation,
                        printable(value.override_text(), k_longest_value));
@@ -172,7 +174,7 @@ VariedScene SceneVariations::varied(int variation, const SceneArrays* arrays) co
         SceneDesc desc = load_scene_tree(tree, file_, arrays);
         return {std::move(tree), std::move(desc)};
     } catch (const InputError& fault) {
-        // What lies in one of the values says so itself.
+        // The message of a fault in one of the values already names it.
         const std::string_view what = fault.what();
         for (const DrawnValue& value : drawn)
             if (what.starts_with(origin_of(value, variation))) throw;

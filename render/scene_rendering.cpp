@@ -19,18 +19,18 @@ namespace uw {
 
 namespace {
 
-// How far the columns of a lamp's map may be off between two of its rays, as optical depth: rays
-// half as far apart are used. A camera's ray meets hundreds of such errors, of either sign; those
-// along a ray, which add up, are held to less (ColumnFace).
+// Tolerance for the columns of a lamp's map between two of its rays, as optical depth; the rays
+// used are half as far apart. A camera's ray meets hundreds of such errors, of either sign. Errors
+// along a ray, which add up, have a smaller tolerance (ColumnFace).
 constexpr double k_column_tolerance = 0.02;
-// Rays per pixel for what is not a mean over light paths, in images that are.
+// Maximum number of rays per pixel, in path-traced images, for layers that are not means over
+// paths.
 constexpr int k_max_samples_beside_paths = 16;
-// One path's relative deviation is 2 to 3 at this optical depth of the nearest lamp; the table that
-// leads paths there ends at 48.
+// At this optical depth of the nearest lamp, the relative deviation of a path is 2 to 3. The table
+// that guides paths to the lamp ends at 48.
 constexpr double k_max_depth = 20;
 
-// Whether light that is scattered or reflected more than once is rendered by
-// MultipleScatteringPass.
+// Whether MultipleScatteringPass renders the multiple scattering of an image.
 bool paths_at_nodes(const RenderDesc& render) {
     return scattering_of(render) == RenderDesc::Scattering::multiple &&
            !integrator_kind(render.integrator).traces_paths;
@@ -41,7 +41,7 @@ bool paths_at_nodes(const RenderDesc& render) {
 PassList make_passes(const ImageScene& image, const PathRequest& paths, std::int64_t frame) {
     const SceneDesc& scene = image.desc();
     const RenderDesc& render = scene.render;
-    PassList passes;  // check_integrator refuses those that do not go together
+    PassList passes;  // check_integrator refuses invalid combinations
     if (paths_at_nodes(render)) passes.add<MultipleScatteringPass>(paths.path_factor);
     if (scene.water.snow) passes.add<SnowPass>(*scene.water.snow);
     if (integrator_kind(render.integrator).traces_paths)

@@ -15,35 +15,35 @@
 
 namespace uw {
 
-/// The passes of an image, the only place that knows which ones it takes.
-/// `frame`: its number, on which the sensor's noise depends.
+/// Makes the passes of an image. `frame`: its number, on which the sensor's noise depends.
 PassList make_passes(const ImageScene& image, const PathRequest& paths = {},
                      std::int64_t frame = 0);
 
-/// The layers of an image: `request` is what LayerPlan takes. Throws as it does, and UsageError if
-/// `paths` is requested of an integrator that traces none.
+/// Returns the layers of an image; `request` is that of LayerPlan. Throws as LayerPlan, and
+/// UsageError if `paths` is requested of an integrator that does not trace paths.
 LayerPlan layer_plan(const ImageScene& image, std::string_view request,
                      const PathRequest& paths = {});
 
-/// The resolution at which lamps are splatted into water of `medium` for an image of this quality.
+/// Returns the resolution of deep shadow maps in water of `medium` for an image of this quality.
 DeepShadowOptions deep_shadow_options(RenderDesc::Quality quality, const Medium& medium);
 
-/// The bands of an image that are seen along rays of their own, if its camera's port has indices by
-/// wavelength: a draft's may be off by a pixel, others by a tenth of one.
+/// Returns the groups of bands with rays of their own, if the port of the camera has indices by
+/// wavelength. Rays of a group may be off by a pixel in drafts, and by a tenth of a pixel
+/// otherwise.
 std::vector<ColourGroup> colour_groups_of(const SceneDesc& scene);
 
-/// Renders the pixels of `scene` by `transport`, one at a time. Both outlive the result. The scene
-/// has slabs if `parts` has the first.
+/// Returns a renderer of the pixels of `scene` by `transport`, both of which must outlive it.
+/// Precondition: the scene has slabs if `parts` has the first slab.
 PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& transport,
                              const InScatterParts& parts = {}, const PointMatchers& matchers = {});
-/// The same along other rays than those of the scene's camera; they outlive the result.
+/// The same along other rays than those of the scene's camera; they must outlive the result.
 PixelRenderer pixel_renderer(const AssembledScene& scene, const RaySource& rays,
                              const LightTransport& transport, const InScatterParts& parts = {},
                              const PointMatchers& matchers = {});
 
-/// One line about lamps too far away for the fast form of multiple scattering: its paths begin at
-/// the camera and seldom come near such lamps, so that few of them carry nearly all the light. None
-/// where it is not what the scene is rendered by.
+/// Returns a warning, one line, if all lamps are too far away for MultipleScatteringPass: its paths
+/// begin at the camera and seldom come close to such lamps, so that a few paths carry nearly all
+/// light. None if the scene is rendered otherwise.
 std::optional<std::string> far_lamp_warning(const AssembledScene& scene);
 
 }  // namespace uw

@@ -73,7 +73,7 @@ std::optional<Affine> inverse_of(const Affine& map) {
     return map.inverse();
 }
 
-/// The motions of the `count` objects of one entry of `geometry`.
+/// Returns the motions of the `count` objects of one entry of `geometry`.
 ObjectMotions motions_of(const GeometryDesc& now, const GeometryDesc& then, std::size_t count,
                          std::vector<std::string>& warnings) {
     if (now.file != then.file) {
@@ -92,7 +92,7 @@ ObjectMotions motions_of(const GeometryDesc& now, const GeometryDesc& then, std:
     const std::vector<Affine> after = gltf_placements(then.file, then.time.value_or(0));
     ObjectMotions motions(count);
     for (std::size_t i = 0; i < std::min({count, before.size(), after.size()}); ++i) {
-        // A node that is scaled to nothing shows no points.
+        // A node that is scaled to zero has no points.
         if (const auto node_from_file = inverse_of(before[i]))
             motions[i] = then.world_from_object * after[i] * *node_from_file * object_from_world;
     }
