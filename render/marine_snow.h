@@ -28,9 +28,9 @@ std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Cam
 /// A camera at one time of an exposure.
 struct ExposureView {
     Camera camera;
-    double time = 0;            // relative to the middle of the exposure [s]
-    Affine middle_from_moment;  // maps points to where the camera in the middle sees them in the
-                                // same way
+    double time = 0;  // relative to the middle of the exposure [s]
+    /// Maps a point to where the camera in the middle sees it as this one does.
+    Affine middle_from_moment;
 };
 
 /// Returns the camera of an image's scene in the middle of the exposure, when the shutter opens and

@@ -94,8 +94,9 @@ class Renderer {
     /// The report on the image that was prepared or rendered last.
     const RenderReport& report() const { return report_; }
 
-    /// @name The parts of an image's scene, for closer inspection References to them are valid
-    /// until the scene is set or edited again. @{
+    /// @name The parts of an image's scene, for closer inspection
+    /// References to them are valid until the scene is set or edited again.
+    /// @{
 
     /// Loads and builds the scene and places its slabs, unless that has been done.
     const AssembledScene& assemble();

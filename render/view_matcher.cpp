@@ -20,9 +20,9 @@ SeenPoint seen_point(const Point3& world, const Camera& camera, const Surfaces& 
     if (!pixel) return {};
     const std::optional<Ray> ray = camera.refracted_ray(pixel->x, pixel->y);
     if (!ray) return {};
-    SeenPoint seen{*pixel, distance(ray->origin, world), is_in_image(*pixel, camera)};
-    seen.visible = seen.in_image && !surfaces.occluded(ray->origin, world);
-    return seen;
+    SeenPoint point{*pixel, distance(ray->origin, world), is_in_image(*pixel, camera)};
+    point.visible = point.in_image && !surfaces.occluded(ray->origin, world);
+    return point;
 }
 
 ViewMatcher::ViewMatcher(Camera camera, ObjectMotions motions,
@@ -48,14 +48,14 @@ void ViewMatcher::match(std::span<const SurfaceHit* const> hits,
         const std::optional<Point3> point = moved(*hits[i]);
         if (!point) continue;
         PointMatch& match = matches[i].emplace();
-        const std::optional<Sighting> seen = camera_.sight(*point);
-        if (!seen) continue;
-        match.x = seen->image.x;
-        match.y = seen->image.y;
+        const std::optional<Sighting> sighting = camera_.sight(*point);
+        if (!sighting) continue;
+        match.x = sighting->image.x;
+        match.y = sighting->image.y;
         const bool is_outside =
             match.x < 0 || match.y < 0 || match.x >= camera_.width() || match.y >= camera_.height();
         if (!surfaces_ || is_outside) continue;
-        from.push_back(seen->ray.origin);
+        from.push_back(sighting->ray.origin);
         to.push_back(*point);
         within.push_back(&match);
     }

@@ -34,10 +34,10 @@ class ScoreSum final : public ContributionSink {
         if (before == k_no_vertex) scores_.begin();
         return scores_.add_vertex(before, vertex);
     }
-    void add(const PathContribution& term) override {
-        scores_.find(term, {}, score_);
+    void add(const PathContribution& contribution) override {
+        scores_.find(contribution, {}, score_);
         for (std::size_t i = 0; i < sums_.size(); ++i)
-            sums_[i] += term.radiance[i % bands_] * score_[i];
+            sums_[i] += contribution.radiance[i % bands_] * score_[i];
     }
     const std::vector<double>& sums() const { return sums_; }
 
@@ -144,16 +144,16 @@ class WorthOfTerms final : public ContributionSink {
         for (const auto& gradient : gradients_) number = gradient->add_vertex(before, vertex);
         return number;
     }
-    void add(const PathContribution& term) override {
+    void add(const PathContribution& contribution) override {
         double size = 0;
         for (std::size_t b = 0; b < factors_.size(); ++b) {
-            weighted_[b] = factors_[b] * term.radiance[b];
+            weighted_[b] = factors_[b] * contribution.radiance[b];
             size += std::abs(weighted_[b]);
         }
         if (random_)
-            keep(term, size);
+            keep(contribution, size);
         else
-            pass_on(term);
+            pass_on(contribution);
     }
 
   private:
@@ -161,21 +161,22 @@ class WorthOfTerms final : public ContributionSink {
     static constexpr std::size_t k_selected = 8;
 
     struct Kept {
-        PathContribution term;
+        PathContribution contribution;
         double size;
         std::size_t columns, concentration;  // numbers of values
     };
 
-    void pass_on(const PathContribution& term) {
-        for (const auto& gradient : gradients_) gradient->add(term, weighted_);
+    void pass_on(const PathContribution& contribution) {
+        for (const auto& gradient : gradients_) gradient->add(contribution, weighted_);
     }
 
     // Copies what the contribution refers to: the ray's data are gone when it is used.
-    void keep(const PathContribution& term, double size) {
-        kept_.push_back({term, size, term.columns.size(), term.concentration.size()});
-        kept_.back().term.radiance = {};
+    void keep(const PathContribution& contribution, double size) {
+        kept_.push_back(
+            {contribution, size, contribution.columns.size(), contribution.concentration.size()});
+        kept_.back().contribution.radiance = {};
         for (const std::span<const double> values :
-             {std::span<const double>(weighted_), term.columns, term.concentration})
+             {std::span<const double>(weighted_), contribution.columns, contribution.concentration})
             values_.insert(values_.end(), values.begin(), values.end());
         total_ += size;
     }
@@ -192,8 +193,8 @@ class WorthOfTerms final : public ContributionSink {
         };
         for (Kept& kept : kept_) {
             const std::span<const double> weighted = take(weighted_.size());
-            kept.term.columns = take(kept.columns);
-            kept.term.concentration = take(kept.concentration);
+            kept.contribution.columns = take(kept.columns);
+            kept.contribution.concentration = take(kept.concentration);
             before += kept.size;
             int times = 0;
             if (!is_few)
@@ -201,7 +202,7 @@ class WorthOfTerms final : public ContributionSink {
             const double weight = is_few ? 1 : times * step / kept.size;
             if (!(weight > 0)) continue;
             for (std::size_t b = 0; b < weighted_.size(); ++b) weighted_[b] = weighted[b] * weight;
-            pass_on(kept.term);
+            pass_on(kept.contribution);
         }
         kept_.clear();
         values_.clear();
@@ -212,8 +213,8 @@ class WorthOfTerms final : public ContributionSink {
     std::vector<double> factors_, weighted_;
     std::optional<PathRandom> random_;  // none: all contributions are used
     std::vector<Kept> kept_;
-    std::vector<double>
-        values_;  // of each kept contribution: weighted radiance, columns, concentrations
+    // Of each kept contribution: weighted radiance, columns and concentrations.
+    std::vector<double> values_;
     double total_ = 0;
 };
 
@@ -224,10 +225,10 @@ void gather(const PixelWeights& weights, std::span<const PartGradients> parts,
     const PixelWindow& window = weights.window;
     std::atomic<int> done = 0;
     parallel_for(parts.size(), [&](std::size_t part) {
-        WorthOfTerms terms(parts[part], weights.bands);
+        WorthOfTerms sink(parts[part], weights.bands);
         for (int y = window.y0 + static_cast<int>(part); y < window.y1;
              y += static_cast<int>(parts.size())) {
-            for (int x = window.x0; x < window.x1; ++x) render(x, y, terms);
+            for (int x = window.x0; x < window.x1; ++x) render(x, y, sink);
             progress(static_cast<double>(++done) / window.height());
         }
     });
@@ -238,15 +239,15 @@ void gather(const PixelWeights& weights, std::span<const PartGradients> parts,
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
                          const PixelWeights& weights, const std::optional<Draws>& draws,
                          std::span<const PartGradients> parts, const ProgressCallback& progress) {
-    gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& terms) {
+    gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& sink) {
         thread_local PixelView view;
         thread_local SurfaceLight light;
         pixels.trace(x, y, view);
         pixels.light_surfaces(std::span(&view, 1), light);
-        if (draws) terms.thin(x, y, draws->seed);
-        terms.begin(weights.at(x, y), pixels.pixel_factor(view));
-        add_quadrature_terms(pixels, water, view, light, terms);
-        terms.finish();
+        if (draws) sink.thin(x, y, draws->seed);
+        sink.begin(weights.at(x, y), pixels.pixel_factor(view));
+        add_quadrature_terms(pixels, water, view, light, sink);
+        sink.finish();
     });
 }
 
@@ -254,14 +255,14 @@ void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, con
                    std::span<const PartGradients> parts, const ProgressCallback& progress) {
     PathPixels paths(pixels, 0);
     paths.allocate_paths(draws.samples);
-    gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& terms) {
+    gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& sink) {
         thread_local PixelResult result;
         thread_local PixelView view;
         pixels.trace(x, y, view);
-        terms.begin(weights.at(x, y), pixels.pixel_factor(view) / draws.samples);
+        sink.begin(weights.at(x, y), pixels.pixel_factor(view) / draws.samples);
         paths.render(
-            x, y, round_of(draws), [](int) {}, result, &terms);
-        terms.finish();
+            x, y, round_of(draws), [](int) {}, result, &sink);
+        sink.finish();
     });
 }
 

@@ -53,8 +53,8 @@ struct PixelWeights {
     }
 };
 
-/// Receive the derivatives of that scalar from one part of the image, which one thread renders. Not
-/// empty.
+/// The gradients that receive the derivatives of that scalar from one part of the image, which one
+/// thread renders. Not empty.
 using PartGradients = std::vector<std::unique_ptr<ContributionGradient>>;
 
 /// Propagates the derivatives of that scalar to all `parts`, by single scattering as

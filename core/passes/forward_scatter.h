@@ -46,10 +46,9 @@ class WidthLadder {
 
   private:
     double offset_ = 0;
-    double begin_ = 0, per_step_ = 1;  // of the logarithm of offset_ + width
-    int neighbours_ = 1;               // number of kernels in an interpolation
-    std::array<double, 4> inverse_{1, 1, 1,
-                                   1};  // factor that makes each polynomial 1 at its own node
+    double begin_ = 0, per_step_ = 1;            // of the logarithm of offset_ + width
+    int neighbours_ = 1;                         // number of kernels in an interpolation
+    std::array<double, 4> inverse_{1, 1, 1, 1};  // makes each polynomial 1 at its own node
     std::vector<double> widths_;
 };
 

@@ -19,7 +19,7 @@ ScatterPlane scatter_plane(const RaySource& rays);
 ///     (14)  E     = E' + E' * g(R_lamps)      light falling on surfaces
 ///     (16)  L_s   = L_d + L_d * g(R_c)        the signal, with (14) in it
 ///     (17)  E_s   = E_s' + E_s' * g(R_lamps)  light scattered to the camera by a slab of water
-///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each slab's light on its way to the camera,
+///     (18)  L_b   = sum_i L_i + L_i * g(R_i)  each slab's light on its path to the camera,
 ///                                             with (17) in it
 ///
 /// The layer `forward` contains the light added by (14) and (16); that added by (17) and (18)

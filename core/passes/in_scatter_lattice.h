@@ -156,8 +156,7 @@ class InScatterLattice {
         int radius = 0;  // within which its depths cover those of all pixels [pixels]
         std::size_t depth_count = 0;
         std::array<Depth, k_depths> depths{};
-        std::size_t values =
-            0;  // index in node_values_ of those at the first stop of the first depth
+        std::size_t values = 0;  // index in node_values_ of the first stop of the first depth
     };
     using Corners = std::array<const Node*, 4>;
     struct Place;

@@ -104,24 +104,27 @@ class PathPixels::Sum final : public ContributionSink {
     int add_vertex(int before, const PathVertex& vertex) override {
         return observer_ != nullptr ? observer_->add_vertex(before, vertex) : k_no_vertex;
     }
-    void add(const PathContribution& term) override {
-        if (observer_ != nullptr) observer_->add(term);
-        add_to(pixel_.*part_, term);
-        add_to(batch_, term);
-        if (part_ == &PixelResult::backscatter && term.distance >= first_slab_.begin &&
-            term.distance < first_slab_.end)
-            add_to(pixel_.backscatter_first, term);
-        if (term.lamp != k_no_lamp && !pixel_.lamps.empty()) add_to(pixel_.lamps[term.lamp], term);
+    void add(const PathContribution& contribution) override {
+        if (observer_ != nullptr) observer_->add(contribution);
+        add_to(pixel_.*part_, contribution);
+        add_to(batch_, contribution);
+        if (part_ == &PixelResult::backscatter && contribution.distance >= first_slab_.begin &&
+            contribution.distance < first_slab_.end)
+            add_to(pixel_.backscatter_first, contribution);
+        if (contribution.lamp != k_no_lamp && !pixel_.lamps.empty())
+            add_to(pixel_.lamps[contribution.lamp], contribution);
         if (pixel_.orders.empty()) return;
         const auto last = static_cast<int>(pixel_.orders.size()) - 1;
-        add_to(pixel_.orders[static_cast<std::size_t>(std::min(term.scatterings, last))], term);
-        add_to(pixel_.reflections[static_cast<std::size_t>(std::min(term.reflections, last))],
-               term);
+        add_to(pixel_.orders[static_cast<std::size_t>(std::min(contribution.scatterings, last))],
+               contribution);
+        add_to(
+            pixel_.reflections[static_cast<std::size_t>(std::min(contribution.reflections, last))],
+            contribution);
     }
 
   private:
-    void add_to(Spectrum& sum, const PathContribution& term) const {
-        uw::add(sum.first(bands_), term.radiance);
+    void add_to(Spectrum& sum, const PathContribution& contribution) const {
+        uw::add(sum.first(bands_), contribution.radiance);
     }
 
     PixelResult& pixel_;

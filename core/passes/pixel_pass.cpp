@@ -42,15 +42,13 @@ class TileRenderer {
 
     const PixelRenderer& renderer_;
     std::span<const PixelStep> steps_;
-    std::vector<InScatterLattice>
-        lattices_;  // one per part; none: every pixel's own ray is integrated
+    std::vector<InScatterLattice> lattices_;  // one per part; none: integrate every pixel's ray
     PixelWindow tile_;
-    Grid2D<PixelView> views_;                 // of the tile
-    SurfaceLight light_;                      // on all their samples
-    std::vector<std::size_t> first_samples_;  // index of each view's first sample in light_
-    std::vector<double> in_scatter_;          // of the current pixel
-    std::vector<double> other_light_,
-        least_;  // by band: sum over the previous parts, and of one part
+    Grid2D<PixelView> views_;                  // of the tile
+    SurfaceLight light_;                       // on all their samples
+    std::vector<std::size_t> first_samples_;   // index of each view's first sample in light_
+    std::vector<double> in_scatter_;           // of the current pixel
+    std::vector<double> other_light_, least_;  // by band: of all previous parts, and of one
     PixelResult result_;
 };
 

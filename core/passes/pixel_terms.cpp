@@ -17,11 +17,11 @@ class WeightedTerms final : public ContributionSink {
     int add_vertex(int before, const PathVertex& vertex) override {
         return sink_.add_vertex(before, vertex);
     }
-    void add(const PathContribution& term) override {
-        for (std::size_t b = 0; b < term.radiance.size(); ++b)
-            radiance_[b] = weight_ * term.radiance[b];
-        PathContribution weighted = term;
-        weighted.radiance = radiance_.first(term.radiance.size());
+    void add(const PathContribution& contribution) override {
+        for (std::size_t b = 0; b < contribution.radiance.size(); ++b)
+            radiance_[b] = weight_ * contribution.radiance[b];
+        PathContribution weighted = contribution;
+        weighted.radiance = radiance_.first(contribution.radiance.size());
         sink_.add(weighted);
     }
 
@@ -40,7 +40,7 @@ void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
     const std::span<const double> to_camera = light.to_camera(light_index);
     const SurfaceReflection reflection(*scene.surfaces, surface, static_cast<int>(bands));
     Spectrum arriving, brdf;
-    PathContribution term{
+    PathContribution contribution{
         .distance = surface.hit.distance,
         .radiance = arriving.first(bands),
         .vertex = sink.add_vertex(k_no_vertex, {PathVertex::Kind::camera, surface.ray.origin}),
@@ -51,10 +51,10 @@ void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
             leaving[b] += reflection.emission()[b];
             arriving[b] = reflection.emission()[b] * to_camera[b];
         }
-        term.lamp = lamp_of_emission(*scene.surfaces, surface.hit).value_or(k_no_lamp);
-        sink.add(term);
+        contribution.lamp = lamp_of_emission(*scene.surfaces, surface.hit).value_or(k_no_lamp);
+        sink.add(contribution);
     }
-    term.reflections = 1;
+    contribution.reflections = 1;
     for (std::size_t j = 0; j < light.emitter_count(); ++j) {
         if (!light.visible(light_index, j)) continue;
         brdf_for(light.emitters()[j], reflection, surface, brdf);
@@ -63,9 +63,9 @@ void add_direct_light(const LitScene& scene, const SurfaceSample& surface,
             leaving[b] += reflected;
             arriving[b] = reflected * to_camera[b];
         }
-        term.lamp = light.emitters()[j].index();
-        term.emitter = j;
-        sink.add(term);
+        contribution.lamp = light.emitters()[j].index();
+        contribution.emitter = j;
+        sink.add(contribution);
     }
 }
 

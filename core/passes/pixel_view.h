@@ -49,10 +49,9 @@ struct PointMatchers {
 
 /// What the rays of one pixel hit, before any lighting. Reused storage.
 struct PixelView {
-    double alpha = 0;  // fraction of the samples whose ray enters the water
-    std::optional<Ray>
-        ray;  // along which in-scattering is integrated; none if no ray enters the water
-    double x = 0, y = 0;  // image position of that ray
+    double alpha = 0;        // fraction of the samples whose ray enters the water
+    std::optional<Ray> ray;  // for in-scattering; none if no ray enters the water
+    double x = 0, y = 0;     // image position of that ray
     /// The distances up to which in-scattering is integrated [m along `ray`, ascending; k_far
     /// without a surface], and the fraction of the samples that each stands for. Empty without a
     /// ray.

@@ -37,8 +37,8 @@ constexpr std::uint64_t k_meter_seed = 0x6d65746572;
 class RadianceSum final : public ContributionSink {
   public:
     explicit RadianceSum(std::size_t bands) : bands_(bands) {}
-    void add(const PathContribution& term) override {
-        for (std::size_t b = 0; b < bands_; ++b) sum_[b] += term.radiance[b];
+    void add(const PathContribution& contribution) override {
+        for (std::size_t b = 0; b < bands_; ++b) sum_[b] += contribution.radiance[b];
     }
     const Spectrum& sum() const { return sum_; }
     void reset() { sum_ = {}; }
@@ -399,9 +399,10 @@ std::optional<WaterLeaving> LightMeter::read_water_leaving(const Point3& x, int 
                        std::max(1, rays / k_batches));
     });
     result.radiance = over_batches(batches);
-    const double leaves = (1 - surface->reflectance_from_water(1)) / (surface->n() * surface->n());
-    result.radiance.mean *= leaves;
-    result.radiance.error *= leaves;
+    const double transmitted =
+        (1 - surface->reflectance_from_water(1)) / (surface->n() * surface->n());
+    result.radiance.mean *= transmitted;
+    result.radiance.error *= transmitted;
     for (std::size_t b = 0; b < bands; ++b) {
         if (!(result.irradiance[b] > 0)) continue;
         result.reflectance.mean[b] = result.radiance.mean[b] / result.irradiance[b];
