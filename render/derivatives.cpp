@@ -237,7 +237,7 @@ Medium with_one_more(const std::string& name, const AssembledScene& scene) {
         for (Spectrum& b : unit.scattering) b *= 2.0;
     } else if (name == k_small || name == k_large) {
         ParticleDerivative particles = derivative_by_particles(scene, name);
-        // The water's own phase functions, and those of the particles beyond them.
+        // These are the water's own phase functions, followed by those of the particles.
         const std::size_t phases = particles.phase_functions.size();
         medium.phase_functions = std::move(particles.phase_functions);
         medium.uniform.scattering.resize(phases);

@@ -112,7 +112,7 @@ std::string matrix_rows(const Affine& pose) {
     return text;
 }
 
-// As make_band_colour takes the description.
+// Returns the name of the space of RGB channels, as make_band_colour interprets the description.
 std::string rgb_space(const ColourDesc& colour, std::size_t bands) {
     using Response = ColourDesc::Response;
     if (colour.response == Response::camera) return "of the camera";

@@ -19,7 +19,7 @@ namespace {
 // least this many along an edge, as a shadow narrower than a texel may be missed.
 constexpr int k_min_shadow_resolution = 128;
 // The optical depth from the camera beyond which a sun's shadows in the water do not matter.
-constexpr double k_max_depth = 15;
+constexpr double k_max_shadow_depth = 15;
 
 }  // namespace
 
@@ -125,7 +125,7 @@ std::shared_ptr<const DeepShadow> LightSplatter::splat_sun(const AssembledScene&
     const AttenuationTable attenuation(scene.water.medium);
     const double least =
         attenuation.uniform.least(static_cast<std::size_t>(attenuation.band_count));
-    const double max_distance = least > 0 ? std::min(k_far, k_max_depth / least) : k_far;
+    const double max_distance = least > 0 ? std::min(k_far, k_max_shadow_depth / least) : k_far;
     const Point3 camera = at_origin_plus(scene.camera->world_from_camera().offset());
     SunMaps maps{sun, shadow_resolution(emitter),
                  SunShadowMap::squares_around(camera, max_distance, scene.surfaces->bounds(), sun),

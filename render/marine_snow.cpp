@@ -20,8 +20,8 @@ constexpr double k_min_coverage = 1e-3;
 // Fraction of a pixel above which the eye would miss single particles that are not drawn.
 constexpr double k_visible_coverage = 0.02;
 // Optical depth, in the clearest band, behind which a thousandth of the light is left.
-constexpr double k_max_depth = 6.9;
-constexpr double k_max_distance = 200;  // m
+constexpr double k_max_drawn_depth = 6.9;
+constexpr double k_max_drawn_distance = 200;  // m
 // Ratio of successive coverages that are tried.
 constexpr double k_coverage_step = 1.05;
 
@@ -52,7 +52,8 @@ std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Cam
                                                        .alone = snow_alone(desc, medium)});
     const std::vector<SnowClass>& classes = model->field.classes();
     const double min_c = medium.uniform.attenuation().least(medium.wavelengths_nm.size());
-    const double max_distance = std::min(k_max_distance, k_max_depth / std::max(min_c, 1e-6));
+    const double max_distance =
+        std::min(k_max_drawn_distance, k_max_drawn_depth / std::max(min_c, 1e-6));
     const double view = view_angle(camera);
     const double pixel = view / camera.width() / camera.height();
     model->ranges.assign(classes.size(), max_distance);

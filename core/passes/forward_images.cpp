@@ -70,7 +70,7 @@ void InScatterSlabs::integrate(const Ray& ray, double end, std::size_t first, st
     ends.clear();
     for (std::size_t i = first; i < last && distance_of(i) < end; ++i)
         ends.push_back(std::min(end, distance_of(i + 1)));
-    // Slabs behind the camera's own glass are empty.
+    // Slabs that lie entirely before the start of the ray in water are empty.
     const auto empty = static_cast<std::size_t>(
         std::find_if(ends.begin(), ends.end(), [&](double s) { return s > start; }) - ends.begin());
     if (empty == ends.size()) return;

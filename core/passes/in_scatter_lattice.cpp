@@ -422,7 +422,7 @@ bool InScatterLattice::corners(int i, int j, int spacing, Corners& found) {
 }
 
 bool InScatterLattice::confirmed(int i, int j, int spacing) {
-    // Pointers stay valid: all nodes are allocated from the start.
+    // Pointers to nodes stay valid, as all of them are allocated from the start.
     Corners from{};
     if (!corners(i, j, spacing, from)) return false;
     const int half = spacing / 2;
@@ -540,7 +540,7 @@ bool InScatterLattice::add_node(const Node& node, double weight, std::span<const
             for (std::size_t k = 0; k < value_count_; ++k) values[k] += whole * at_stops[k];
             continue;
         }
-        // -1..1 from the nearest to the farthest.
+        // t runs from -1 at the nearest distance to 1 at the farthest.
         const double t = 2 * (distances[i] - depth.middle()) / (depth.greatest - depth.least);
         const double of_least = whole * 0.5 * t * (t - 1), of_middle = whole * (1 - t * t);
         const double of_greatest = whole * 0.5 * t * (t + 1);

@@ -129,13 +129,14 @@ BlurKernel::TablePosition BlurKernel::table_position(double f) {
     return {static_cast<std::size_t>(node), cubic_weights(at - node)};
 }
 
-/// The exponential kernel is a mixture of Gaussians of sigma = s/|z|, z standard normal (a Cauchy
-/// distribution in the plane), and the aliases of a sampled Gaussian's spectrum are known. The
-/// mixture is integrated over ln z, where the integrand is smooth and decays to zero at both ends:
-/// the trapezoidal rule is accurate to 1e-9.
+/// Tabulates the aliases of the exponential kernel. It is a mixture of Gaussians of sigma = s/|z|,
+/// z standard normal (a Cauchy distribution in the plane), and the aliases of a sampled Gaussian's
+/// spectrum are known. The mixture is integrated over ln z, where the integrand is smooth and
+/// decays to zero at both ends, so that the trapezoidal rule is accurate to 1e-9.
 void BlurKernel::tabulate_aliases() {
     const double narrow = std::min(blur_.x, blur_.y);
-    // In the lower half of the spectrum, aliases are those of 3/4 cycles per pixel at least.
+    // In the lower half of the spectrum, aliases come from frequencies of at least 3/4 cycles per
+    // pixel.
     if (2 * column_count_ <= width_ && 2 * row_count_ <= height_ &&
         1.5 * k_pi * narrow > k_alias_free_exponent)
         return;
@@ -156,7 +157,7 @@ void BlurKernel::tabulate_aliases() {
             for (std::size_t j = 0; j < k_nodes; ++j)
                 aliases_[i * k_nodes + j] += lines[0][i] * lines[1][j] - lines[2][i] * lines[3][j];
     };
-    // Below this width no light leaves the pixel, and the mixture would be endless.
+    // This bounds the mixture for kernels so narrow that no light leaves the pixel.
     constexpr double k_min_deviate = 1e-7;
     constexpr double k_log_step = 0.1;
     table_rows_.reserve(static_cast<std::size_t>(row_count_));
@@ -228,8 +229,8 @@ struct CosineTransform::Plans {
     static Plan plan_line(int length, fftw_r2r_kind kind) {
         std::vector<double> line(static_cast<std::size_t>(length));
         const std::lock_guard lock(fourier_planner());
-        // Estimated, not measured, so that the plan, and thus the rounding, is the same in every
-        // run. Lines of an image differ in alignment.
+        // FFTW estimates the best plan instead of measuring it, so that the plan, and thus the
+        // rounding, is the same in every run. The lines of an image differ in alignment.
         Plan plan(fftw_plan_r2r_1d(length, line.data(), line.data(), kind,
                                    FFTW_ESTIMATE | FFTW_UNALIGNED));
         if (!plan) throw std::bad_alloc();

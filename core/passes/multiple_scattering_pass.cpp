@@ -214,7 +214,7 @@ class MultipleScattering {
 /// Standard errors of the light of a pixel, by band.
 struct MultipleScattering::Errors {
     Spectrum water;     // of in-scattered light from the nodes
-    Spectrum surfaces;  // of the indirect light on surfaces, seen directly or through scattering
+    Spectrum surfaces;  // of indirect light on surfaces, visible directly or as halo
     // Sums, over the pixel's own paths, of the light that glossy surfaces mirror, and of its
     // squares.
     Spectrum mirrored, mirrored_squares;

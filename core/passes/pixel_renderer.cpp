@@ -411,7 +411,8 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
             result.lit += weight * light.visible_share(sample, j) * emitter.share() /
                           static_cast<double>(lamp_count());
         brdf_for(emitter, reflection, surface, brdf);
-        // One loop instead of a spectrum per product: this runs for every sample and every emitter.
+        // A single loop is faster than a spectrum per product: it runs for every sample and every
+        // emitter.
         for (std::size_t b = 0; b < bands; ++b) {
             const double irradiance = weight * light.irradiance(sample, j, b);
             const double response = brdf[b] * factor;

@@ -326,7 +326,7 @@ constexpr int k_snow_tile = 32;  // pixels along an edge
 // hidden, and the distance of a particle.
 enum : std::size_t { k_covered, k_hidden, k_particle_distance, k_others };
 // A particle that covers this fraction of a pixel counts as visible in ground truth.
-constexpr double k_mostly = 0.5;
+constexpr double k_min_cover_of_truth = 0.5;
 
 /// Indices of the splats that touch each tile of a window; tiles are in row order.
 class TileLists {
@@ -416,7 +416,7 @@ void SnowImage::draw(const SnowSplat& splat, std::span<const float> radiance,
                 pixel[b] += static_cast<float>(visible * static_cast<double>(radiance[b]));
             others[k_covered] += static_cast<float>(visible);
             others[k_hidden] += static_cast<float>(visible * static_cast<double>(splat.hidden));
-            if (cover >= k_mostly && others[k_particle_distance] == 0)
+            if (cover >= k_min_cover_of_truth && others[k_particle_distance] == 0)
                 others[k_particle_distance] = static_cast<float>(splat.distance);
         }
 }
