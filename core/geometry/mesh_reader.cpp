@@ -29,8 +29,8 @@ Vector3 position(const TriangleMesh& mesh, std::uint32_t vertex) {
 
 bool usable(const Vector3& p) {
     // NaN fails every comparison.
-    return std::abs(p.x) <= k_max_coordinate && std::abs(p.y) <= k_max_coordinate &&
-           std::abs(p.z) <= k_max_coordinate;
+    return std::abs(p.x) <= k_max_mesh_coordinate && std::abs(p.y) <= k_max_mesh_coordinate &&
+           std::abs(p.z) <= k_max_mesh_coordinate;
 }
 
 /// The counter for a triangle's defect, or null if it has none.

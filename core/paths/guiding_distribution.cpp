@@ -17,10 +17,10 @@ constexpr double k_guide_min_reflectance = 0.1;
 constexpr double k_guide_min_radius = 0.002;  // m: keeps the radiance finite at a lamp
 constexpr double k_guide_min_depth = 1e-6;
 // A few bands, evenly spaced, represent all of them.
-constexpr std::size_t k_max_bands = 4;
+constexpr std::size_t k_max_guide_bands = 4;
 
 std::size_t band_stride(std::size_t bands) {
-    return (bands + k_max_bands - 1) / k_max_bands;
+    return (bands + k_max_guide_bands - 1) / k_max_guide_bands;
 }
 
 double sum_of_guiding_bands(const Spectrum& weights, std::size_t bands) {

@@ -148,7 +148,7 @@ struct LampDesc {
     SourceLocation where;
 
     /// Whether all that it is, is in another part of the scene: of a volume or the sky.
-    bool is_of_scene() const { return glow || sky; }
+    bool is_of_scene() const { return emissive_volume || sky; }
 
     /// Maps the lamp's frame to the world.
     const Affine& world_from_frame(const Affine& world_from_camera) const {

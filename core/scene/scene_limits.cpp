@@ -38,7 +38,7 @@ constexpr double k_max_per_unit = 1e12;
 
 /// The smallest and largest number of a sensor or of snow that is not 0: no real one is beyond, and
 /// single precision holds their products.
-constexpr double k_min_number = 1e-12, k_max_number = 1e12;
+constexpr double k_min_number = 1e-12, k_max_quantity = 1e12;
 
 /// One entry of the scene, for its messages.
 class Checked {
@@ -54,7 +54,7 @@ class Checked {
     /// Neither so large nor, unless it is 0, so small that nothing real is meant.
     void number(std::string_view name, double value) const {
         constexpr std::string_view k_mend = "check its unit";
-        at_most(k_max_number, name, {value}, k_mend);
+        at_most(k_max_quantity, name, {value}, k_mend);
         if (value != 0 && std::abs(value) < k_min_number)
             fail(
                 fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_min_number, k_mend));
