@@ -130,7 +130,7 @@ class PointLight {
             for (const Lamp& lamp : emitters_) {
                 const LampPassage passage(segment.ray, lamp);
                 const double radius = passage.radius(s);
-                if (!(radius > 0) || lamp.holds(radius)) continue;
+                if (!(radius > 0) || lamp.contains(radius)) continue;
                 const Point3 origin = lamp.origin(x);
                 const double relative = lamp.relative_intensity(x - origin);
                 if (!(relative > 0) || scene_.surfaces->occluded(origin, x)) continue;

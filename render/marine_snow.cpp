@@ -205,7 +205,8 @@ void SnowLighting::radiance(const Point3& x, const Ray& ray, double distance,
         const Vector3 from_lamp = x - origin;
         const double radius = glm::length(from_lamp);
         const double relative = lamp.relative_intensity(from_lamp) * lamp.focus(x);
-        if (lamp.holds(radius) || relative <= 0 || scene_.surfaces->occluded(origin, x)) continue;
+        if (lamp.contains(radius) || relative <= 0 || scene_.surfaces->occluded(origin, x))
+            continue;
         if (constituents > 0) {
             if (deep_shadows_.empty())
                 scene_.field->column(origin, x, column);

@@ -48,7 +48,7 @@ void warn_of_lamps_at_the_camera(const SceneDesc& desc, AssembledScene& scene) {
             "it below",
             desc.file.filename().string()));
     for (const Lamp& emitter : scene.emitters) {
-        if (emitter.holds(distance(emitter.position(), ray->origin)))
+        if (emitter.contains(distance(emitter.position(), ray->origin)))
             scene.warnings.push_back(fmt::format(
                 "{}: the lamp is where the camera's rays enter the water; its in-scatter grows "
                 "without bound there and is cut off at {} m from it; move it aside{}",

@@ -469,8 +469,8 @@ class DirectSum {
             lighting.evaluate_one(sample, light);
             seen.to_camera[i] = hit.distance;
             for (const Lamp& emitter : emitters)
-                seen.to_lamps[i] +=
-                    distance(emitter.origin(hit.position), hit.position) * emitter.share() / lamps;
+                seen.to_lamps[i] += distance(emitter.origin(hit.position), hit.position) *
+                                    emitter.fraction() / lamps;
             const SurfaceReflection reflection(*trial_.scene().surfaces, sample,
                                                static_cast<int>(bands_));
             Spectrum brdf;

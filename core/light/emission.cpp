@@ -18,7 +18,8 @@ constexpr double k_coldest = 500, k_hottest = 1e5;     // [K]
 constexpr int k_temperatures = 1024;                   // ln B is nearly linear in 1/T
 constexpr double k_stefan_boltzmann = 5.670374419e-8;  // [W/(m^2 K^4)]
 
-// Of a blackbody, per band [W/(sr m^2)], at equal steps of 1/T from the hottest to the coldest.
+// The log radiance of a blackbody per band [W/(sr m^2)], at equal steps of 1/T from the hottest to
+// the coldest.
 std::vector<Spectrum> log_radiance(std::span<const double> bands_nm) {
     const std::vector<BandInterval> intervals = band_intervals(bands_nm);
     std::vector<Spectrum> result;
@@ -134,14 +135,14 @@ EmissivePart part_of(std::span<const GlowCell> cells) {
     mean /= weight;
     part.centre = at_origin_plus(mean);
     for (const GlowCell& cell : cells) {
-        const Vector3 aside = cell.centre - part.centre;
-        square += cell.weight * (glm::dot(aside, aside) + cell.square);
+        const Vector3 offset = cell.centre - part.centre;
+        square += cell.weight * (glm::dot(offset, offset) + cell.square);
     }
     part.radius = std::sqrt(square / (weight * k_mean_square));
     return part;
 }
 
-// The axis along which the cells lie farthest apart, by their light.
+// The axis along which the cells' light has the greatest variance.
 int widest_axis(std::span<const GlowCell> cells) {
     double weight = 0;
     Vector3 mean(0), square(0);
@@ -156,7 +157,7 @@ int widest_axis(std::span<const GlowCell> cells) {
     return spread.y >= spread.z ? 1 : 2;
 }
 
-// Halves of the same light, again and again.
+// Bisects the cells recursively into halves of equal power.
 void divide(std::span<GlowCell> cells, int count, std::vector<EmissivePart>& parts) {
     if (count == 1 || cells.size() == 1) {
         parts.push_back(part_of(cells));

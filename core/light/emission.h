@@ -13,15 +13,15 @@
 
 namespace uw {
 
-/// The light that a volume gives off where its grid has a value.
+/// How much light a volume emits, by the value of its grid.
 class Emission {
   public:
     /// Throws InputError for a blackbody in a single band, whose width is undefined.
     Emission(const EmissionDesc& desc, std::span<const double> bands_nm);
 
-    /// What a cubic metre shines in each direction where the grid has this value, >= 0
-    /// [W/(sr m^3)]: in proportion to it, by a table, or as a blackbody (Planck's law, over each
-    /// band's interval) whose temperature the value is. Below 500 K there is no light to be seen.
+    /// The light that a cubic metre emits in each direction where the grid has this value, >= 0
+    /// [W/(sr m^3)]: proportional to it, by a table, or as a blackbody (Planck's law, over each
+    /// band's interval) whose temperature is the value. Below 500 K it emits no visible light.
     Spectrum of(double value) const;
 
   private:
@@ -33,30 +33,30 @@ class Emission {
     std::vector<Spectrum> log_radiance_;  // of a blackbody, at equal steps of 1/T
 };
 
-/// A part of a volume that glows: what stands for it where it lights others.
+/// A part of an emissive volume, represented by a point light where it lights other things.
 struct EmissivePart {
-    Point3 centre;       // of its light
+    Point3 centre;       // centroid of its light
     Spectrum intensity;  // in each direction, without water [W/sr]
-    double radius = 0;   // of the sphere (LampFrame) whose light lies as far from its centre [m]
+    double radius = 0;   // of the sphere (LampFrame) whose light has the same variance [m]
 };
 
-/// The parts of all light that `emission` makes of a field of one constituent, the grid's value: at
-/// most `count`, of the same light each but for the grain of the cells (the voxels, or those of a
-/// lattice of 2^21) that they consist of. Neighbours in the list are neighbours in space.
+/// Divides the light that `emission` makes of a field of one constituent, the grid's value, into at
+/// most `count` parts of equal power, up to the grain of the cells of which they consist (voxels,
+/// or the cells of a lattice of 2^21). Neighbours in the list are neighbours in space.
 std::vector<EmissivePart> divide_emission(const ConcentrationField& field, const Emission& emission,
                                           int count);
 
-/// Every `count` neighbours in the list as one.
+/// Merges every `count` neighbours in the list into one part.
 std::vector<EmissivePart> merged(std::span<const EmissivePart> parts, int count);
 
-/// A volume that gives off light.
+/// A volume that emits light.
 struct EmissiveVolume {
     std::shared_ptr<const ConcentrationField> field;  // of one constituent: the grid's value
     Emission emission;
     std::vector<EmissivePart> parts;
 };
 
-/// The same as a lamp of a scene.
+/// An emissive volume that is one of a scene's lamps.
 struct SceneEmission {
     std::size_t lamp = 0;  // its index
     std::shared_ptr<const EmissiveVolume> volume;

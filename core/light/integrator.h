@@ -22,15 +22,15 @@ struct LitScene {
     const Medium* medium = nullptr;
     const ConcentrationField* field = nullptr;
     const Surfaces* surfaces = nullptr;
-    /// The points that emit light, in the order of the scene's lamps: one for each lamp, several
+    /// The points that emit light, in the order of the scene's lamps: one for each lamp, or several
     /// for a lamp with an extent (Lamp::index).
     const std::vector<Lamp>* emitters = nullptr;
     /// The luminous surfaces of lamps with an extent; null if there are none.
     const std::vector<LampSurface>* lamp_surfaces = nullptr;
-    /// The volumes that give off light; null if there are none.
+    /// The volumes that emit light; null if there are none.
     const std::vector<SceneEmission>* emissions = nullptr;
 
-    /// The water's surface, at which light is reflected; null: the water has no end.
+    /// The water's surface, at which light is reflected; null: the water is infinite.
     const WaterSurface* water_surface = nullptr;
 
     /// How many lamps the scene has.
@@ -43,10 +43,10 @@ class DeepShadow {
   public:
     virtual ~DeepShadow() = default;
 
-    /// The parts of the interval `stretch` of `ray` that the lamp illuminates, ascending and
+    /// The parts of the interval `interval` of `ray` that the lamp illuminates, ascending and
     /// disjoint. Precondition: the interval lies within the lamp's beam (Lamp::beam); elsewhere the
     /// map is empty.
-    virtual void lit_intervals(const Ray& ray, const Interval& stretch,
+    virtual void lit_intervals(const Ray& ray, const Interval& interval,
                                std::vector<Interval>& lit) const = 0;
 
     /// Appends distances along `ray` inside `interval` between which the lamp's columns are nearly
@@ -57,7 +57,7 @@ class DeepShadow {
     /// Column concentrations from the lamp to each point, [i * constituent_count + k], [unit m].
     virtual void columns(std::span<const Point3> x, std::span<double> column) const = 0;
 
-    /// How much memory it takes.
+    /// The memory that it takes [bytes].
     virtual std::size_t bytes() const = 0;
 };
 

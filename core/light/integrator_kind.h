@@ -14,17 +14,17 @@ namespace uw {
 
 class PathTracer;
 
-/// The ways in which lamp light reaches the camera: scattered once by the water, reflected once by
-/// surfaces, or any other.
+/// The estimators of the light that reaches the camera: of light scattered once by the water, of
+/// light reflected once by surfaces, and of all other light.
 struct LightTransport {
     std::unique_ptr<const Integrator> integrator;
     std::unique_ptr<const SurfaceLighting> surfaces;
-    /// What `integrator` integrates, in parts of which each is interpolated between pixels by
-    /// itself: suns that waves focus differ from pixel to pixel, all other light does not. Empty:
-    /// as a whole.
+    /// What `integrator` integrates, in parts that are interpolated between pixels separately: the
+    /// light of suns that waves focus varies from pixel to pixel, all other light is smooth.
+    /// Empty: `integrator` is interpolated as a whole.
     std::vector<std::unique_ptr<const Integrator>> parts{};
-    /// Random paths: of all light (IntegratorKind::traces_paths), or of what the other two leave
-    /// out (MultipleScatteringPass). Null unless a pass needs them.
+    /// Traces random paths: for all light (IntegratorKind::traces_paths), or for what the other two
+    /// leave out (MultipleScatteringPass). Null unless a pass needs it.
     std::shared_ptr<const PathTracer> paths{};
 
     /// Replaces the integrator, and its parts with it.
@@ -57,7 +57,7 @@ struct IntegratorKind {
     /// All light is rendered by random paths from the camera (PathTracer); its `samples` are theirs
     /// and have a standard error.
     bool traces_paths = false;
-    /// Renders light that is scattered or reflected more than once, too.
+    /// Also renders light that is scattered or reflected more than once.
     bool multiple_scattering = false;
     int samples = 4, draft_samples = 1;  // per pixel, unless requested
     /// Throws InputError for a scene that it cannot render.

@@ -14,15 +14,14 @@ namespace uw {
 
 namespace {
 
-// Nothing is interpolated that paths are compared with.
+// Paths are a reference, so that the estimators beside them interpolate nothing either.
 LightTransport make_path(const IntegratorInputs& inputs) {
     return {std::make_unique<ReferenceIntegrator>(inputs.scene),
             std::make_unique<DirectLighting>(inputs.scene)};
 }
 
-// All light by random paths from the camera, without bias (`render.integrator: path`). What traces
-// them, LightTransport::paths, is left to the caller of `make`: paths are made of integrators, not
-// the other way round.
+// Renders all light without bias by random paths from the camera (`render.integrator: path`). The
+// caller of `make` adds the path tracer (LightTransport::paths): this layer does not know it.
 constinit const IntegratorKind k_path_kind{.traces_paths = true,
                                            .multiple_scattering = true,
                                            .samples = 16,

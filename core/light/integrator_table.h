@@ -8,10 +8,11 @@ namespace uw {
 /// users write.
 const IntegratorKind& integrator_kind(RenderDesc::Integrator integrator);
 
-/// What light is rendered: that requested, else all that the integrator can render only as a whole.
+/// Which light is rendered: as requested; by default all light if the integrator traces paths, else
+/// light that is scattered once.
 RenderDesc::Scattering scattering_of(const RenderDesc& render);
 
-/// The rays per pixel requested, else as many as the integrator needs.
+/// The rays per pixel that are requested, or by default those that the integrator needs.
 int samples_of(const RenderDesc& render);
 
 /// Throws InputError for a scene that its integrator cannot render.

@@ -16,7 +16,7 @@ Sunlight Sunlight::from_air(const Vector3& direction, const WaterSurfaceDesc& su
     return {WaterSurface(calm).into_water(direction), calm};
 }
 
-double distance_aside(const Point3& point, double patch_radius, const Ray& ray) {
+double squared_offset(const Point3& point, double patch_radius, const Ray& ray) {
     const Vector3 across = glm::cross(point - ray.origin, ray.direction);
     const double patch = patch_radius * patch_radius, ratio = glm::dot(across, across) / patch;
     const double left = 1 - ratio / 9;
@@ -35,26 +35,26 @@ Lamp::Lamp(std::string name, const Sunlight& sunlight, const Spectrum& irradianc
     sunlight_ = sunlight;
 }
 
-Lamp Lamp::emitter(std::size_t index, const Vector3& direction, double share,
+Lamp Lamp::emitter(std::size_t index, const Vector3& direction, double fraction,
                    const std::optional<LampPatch>& patch) const {
-    Lamp beam = emitter(index, position_, share, patch);
+    Lamp beam = emitter(index, position_, fraction, patch);
     beam.sunlight_->direction = direction;
     return beam;
 }
 
 Lamp Lamp::emitter(std::size_t index, const Vector3& direction, const Spectrum& irradiance,
-                   double share, const LampPatch& patch) const {
-    Lamp beam = emitter(index, direction, share, patch);
+                   double fraction, const LampPatch& patch) const {
+    Lamp beam = emitter(index, direction, fraction, patch);
     beam.axis_intensity_ = irradiance;
     return beam;
 }
 
-Lamp Lamp::emitter(std::size_t index, const Point3& position, double share,
+Lamp Lamp::emitter(std::size_t index, const Point3& position, double fraction,
                    const std::optional<LampPatch>& patch) const {
-    Lamp point = brightened(share);
+    Lamp point = brightened(fraction);
     point.patch_ = patch;
     point.index_ = index;
-    point.share_ = share;
+    point.fraction_ = fraction;
     point.position_ = position;
     if (point.is_part() && !sunlight_)
         point.profile_ =
@@ -63,8 +63,8 @@ Lamp Lamp::emitter(std::size_t index, const Point3& position, double share,
 }
 
 Lamp Lamp::emitter(std::size_t index, const Point3& position, const Spectrum& intensity,
-                   double share, const LampPatch& patch) const {
-    Lamp point = emitter(index, position, share, patch);
+                   double fraction, const LampPatch& patch) const {
+    Lamp point = emitter(index, position, fraction, patch);
     point.axis_intensity_ = intensity;
     return point;
 }
@@ -99,12 +99,12 @@ Lamp Lamp::brightened(double factor) const {
 }
 
 Point3 Lamp::origin_on_patch(const Point3& x, const UnitPoint& place) const {
-    const Vector3 aside = patch_->at(place);
-    if (mirror_) return mirror_->mirrored(patch_->centre + aside);
-    if (!sunlight_) return patch_->centre + aside;
-    // The square root is the cosine of the angle to the disc's middle.
+    const Vector3 offset = patch_->at(place);
+    if (mirror_) return mirror_->mirrored(patch_->centre + offset);
+    if (!sunlight_) return patch_->centre + offset;
+    // The square root is the cosine of the angle to the disc's centre.
     const Vector3 middle = glm::cross(patch_->frame.x, patch_->frame.y);
-    return Sunlight::from_air(aside + std::sqrt(1 - glm::dot(aside, aside)) * middle,
+    return Sunlight::from_air(offset + std::sqrt(1 - glm::dot(offset, offset)) * middle,
                               sunlight_->surface)
         .entry(x);
 }
@@ -138,19 +138,19 @@ DirectionCone Lamp::cone() const {
     return cone;
 }
 
-Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
-    if (sunlight_) return below_surface(ray, stretch);
+Interval Lamp::beam(const Ray& ray, const Interval& interval) const {
+    if (sunlight_) return below_surface(ray, interval);
     const DirectionCone lit_cone = cone();
-    if (!(stretch.length() > 0) || lit_cone.has_all()) return stretch;
+    if (!(interval.length() > 0) || lit_cone.has_all()) return interval;
     thread_local std::vector<double> cuts;
     cuts.clear();
     append_cone_crossings(ray, position_, lit_cone.axis, lit_cone.cosine, cuts);
-    std::erase_if(cuts, [&](double s) { return s <= stretch.begin || s >= stretch.end; });
-    cuts.push_back(stretch.begin);
-    cuts.push_back(stretch.end);
+    std::erase_if(cuts, [&](double s) { return s <= interval.begin || s >= interval.end; });
+    cuts.push_back(interval.begin);
+    cuts.push_back(interval.end);
     std::sort(cuts.begin(), cuts.end());
     // The cone is not crossed between two cuts: a segment lies entirely inside or outside.
-    Interval lit{stretch.begin, stretch.begin};
+    Interval lit{interval.begin, interval.begin};
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
         const Vector3 middle = ray.at(0.5 * (cuts[i] + cuts[i + 1])) - position_;
         if (glm::dot(middle, lit_cone.axis) < lit_cone.cosine * glm::length(middle)) continue;
@@ -160,36 +160,37 @@ Interval Lamp::beam(const Ray& ray, const Interval& stretch) const {
     return lit;
 }
 
-Interval Lamp::below_surface(const Ray& ray, const Interval& stretch) const {
+Interval Lamp::below_surface(const Ray& ray, const Interval& interval) const {
     const double length = sunlight_->length_to(ray.origin);
     const double slope = sunlight_->slope(ray.direction);
-    const Interval dark{stretch.begin, stretch.begin};
-    if (slope == 0) return length > 0 ? stretch : dark;
+    const Interval dark{interval.begin, interval.begin};
+    if (slope == 0) return length > 0 ? interval : dark;
     const double crossing = -length / slope;
-    const Interval below = slope > 0 ? Interval{std::max(stretch.begin, crossing), stretch.end}
-                                     : Interval{stretch.begin, std::min(stretch.end, crossing)};
+    const Interval below = slope > 0 ? Interval{std::max(interval.begin, crossing), interval.end}
+                                     : Interval{interval.begin, std::min(interval.end, crossing)};
     return below.length() > 0 ? below : dark;
 }
 
-// Every fourth texel, and farther away, where more of them are seen by one pixel, fewer.
-void Lamp::append_focus_breaks(const Ray& ray, const Interval& stretch,
+// Breaks at every fourth texel, and at wider steps farther away, where a pixel covers more texels.
+void Lamp::append_focus_breaks(const Ray& ray, const Interval& interval,
                                std::vector<double>& s) const {
-    constexpr double k_texels = 4, k_share = 0.02;
+    constexpr double k_texels = 4, k_relative_step = 0.02;
     const double least = k_texels * focus_->texel() / std::max(1e-3, focus_->slide(ray.direction));
-    for (double at = stretch.begin + least; at < stretch.end; at += std::max(least, k_share * at))
+    for (double at = interval.begin + least; at < interval.end;
+         at += std::max(least, k_relative_step * at))
         s.push_back(at);
 }
 
-void Lamp::append_profile_breaks(const Ray& ray, const Interval& stretch,
+void Lamp::append_profile_breaks(const Ray& ray, const Interval& interval,
                                  std::vector<double>& s) const {
     if (sunlight_) {
         const double slope = sunlight_->slope(ray.direction);
         if (slope != 0) s.push_back(-sunlight_->length_to(ray.origin) / slope);
-        if (focus_) append_focus_breaks(ray, stretch, s);
+        if (focus_) append_focus_breaks(ray, interval, s);
         return;
     }
-    const auto append_breaks = [&](const Ray& seen, const Point3& from) {
-        std::visit([&](const auto& profile) { profile.append_breaks(seen, stretch, from, s); },
+    const auto append_breaks = [&](const Ray& line, const Point3& from) {
+        std::visit([&](const auto& profile) { profile.append_breaks(line, interval, from, s); },
                    profile_);
     };
     if (!mirror_) {
@@ -197,7 +198,8 @@ void Lamp::append_profile_breaks(const Ray& ray, const Interval& stretch,
         return;
     }
     append_breaks(mirror_->mirrored(ray), mirror_->mirrored(position_));
-    // Total reflection begins like a square root of the angle, steeply: in ever shorter steps.
+    // The reflectance rises like a square root of the angle up to total reflection, hence the ever
+    // shorter steps towards the critical angle.
     const double critical = mirror_->critical_cosine(), square = critical * critical;
     for (const double step : {0.0, 1.0 / 256, 1.0 / 64, 1.0 / 16, 1.0 / 4})
         append_cone_crossings(ray, position_, -mirror_->up(),

@@ -83,9 +83,9 @@ Spectrum axis_intensity(const LampDesc& desc, const LampProfile& profile, std::s
     return intensity;
 }
 
-// Parallel light of this direction in the air has this irradiance below the surface, across its
-// direction there, relative to that in the air across its direction: less what is reflected, and
-// on a wider beam.
+// The irradiance below the surface of parallel light with this direction in the air, relative to
+// that in the air, each on a plane perpendicular to the light: the surface reflects some of it, and
+// refraction widens the beam.
 double irradiance_below(const WaterSurfaceDesc& surface, const Vector3& direction) {
     if (!surface.n) return 1;
     const WaterSurface boundary(without_waves(surface));
@@ -126,7 +126,7 @@ std::vector<UnitPoint> lattice(int count) {
     return places;
 }
 
-// The points of the surface that belong to these places, moved so that their mean is the centre.
+// The points of the surface to which these places map, shifted so that their mean is the centre.
 std::vector<Vector3> fill(const LampFrame& frame, const std::vector<UnitPoint>& places) {
     std::vector<Vector3> points;
     Vector3 mean(0);
@@ -138,9 +138,10 @@ std::vector<Vector3> fill(const LampFrame& frame, const std::vector<UnitPoint>& 
     return points;
 }
 
-// Seen by a plane perpendicular to it, a disc of uniform radiance is one of the directions' sines,
-// with the irradiance spread evenly over it; perpendicular to a direction itself it is greater.
-// `direction`: of its middle, in the air where the water's surface refracts.
+// In the space of the directions' sines a disc of uniform radiance adds the same irradiance per
+// area to a plane perpendicular to its axis; on a plane perpendicular to the direction itself the
+// irradiance is greater by 1 / cosine. `direction`: of its centre, in the air where the water's
+// surface refracts.
 void append_sun(const SunDesc& sun, const Vector3& direction, const Lamp& lamp, std::size_t index,
                 int thinning, std::vector<Lamp>& emitters) {
     const WaterSurfaceDesc& surface = sun.surface;
@@ -164,8 +165,7 @@ void append_sun(const SunDesc& sun, const Vector3& direction, const Lamp& lamp, 
     }
 }
 
-// So many that they leave half a per cent of unevenness, where all directions of scattering count
-// alike.
+// This many points leave half a per cent of unevenness for isotropic scattering.
 constexpr int k_many_points = 512;
 
 LampPoints points_of(const LampFrame& frame, const Point3& centre,
@@ -208,7 +208,7 @@ void append_emitters(const Lamp& lamp, std::size_t index, std::span<const Emissi
         return all;
     };
     const double all = sum(lamp.axis_intensity());
-    // A lamp that consists of nothing is dark, but there: others keep their numbers.
+    // A lamp without parts has one dark emitter, so that the indices of other lamps stay the same.
     if (parts.empty()) emitters.push_back(lamp.emitter(index, lamp.position(), 1));
     for (const EmissivePart& part : parts) {
         LampFrame frame{{}, {1, 0, 0}, {0, 1, 0}};
@@ -245,9 +245,10 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
     const std::vector<UnitPoint> places = lattice(point_count(desc, thinning));
     const std::vector<Vector3> points = fill(frame, places);
     const std::vector<LampPatch> patches = divide(frame, lamp.position(), places);
-    const double share = 1.0 / static_cast<double>(points.size());
+    const double fraction_of_each = 1.0 / static_cast<double>(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
-        emitters.push_back(lamp.emitter(index, lamp.position() + points[i], share, patches[i]));
+        emitters.push_back(
+            lamp.emitter(index, lamp.position() + points[i], fraction_of_each, patches[i]));
 }
 
 Lamp make_lamp(const LampDesc& desc, const Sky& sky) {
@@ -260,7 +261,7 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
     const WaterSurfaceDesc& surface = desc.sun->surface;
     const std::vector<SkyDirection> directions =
         sky.directions(std::max(1, desc.sky->samples / thinning), surface.n.value());
-    // A lamp that consists of nothing is dark, but there: others keep their numbers.
+    // A lamp without parts has one dark emitter, so that the indices of other lamps stay the same.
     if (directions.empty()) emitters.push_back(lamp.emitter(index, desc.direction, 1.0));
     for (const SkyDirection& part : directions) {
         const Vector3 in_air = -(sky.world_from_sky() * part.towards);

@@ -22,24 +22,24 @@ namespace uw {
 Lamp make_lamp(const LampDesc& desc, const Affine& world_from_camera,
                std::span<const double> bands_nm, std::vector<std::string>& warnings);
 
-/// Appends the points that `lamp`, made of `desc`, consists of: itself, or, if it has an extent,
-/// points that fill that evenly and share its light equally, or of a sun with an angle directions
-/// that fill its disc evenly. They are the same ones in every render: shadows become as many steps.
-/// `index`: of the lamp in the scene. `thinning`: of the extent's samples only every so many-th is
-/// made, at least one. `world_from_camera` places lamps fixed to the camera.
+/// Appends the emitters of which `lamp`, made from `desc`, consists: the lamp itself; or, if it has
+/// an extent, points that fill it evenly, each with the same fraction of its light; or, for a sun
+/// with an angle, directions that fill its disc evenly. They are the same in every render. `index`:
+/// of the lamp in the scene. `thinning`: the extent's number of samples is divided by this, but is
+/// at least one. `world_from_camera` places lamps fixed to the camera.
 ///
-/// The points are a golden-ratio lattice, on a disk with area in the place of its first coordinate
-/// (Vogel's spiral), in a sphere with the distance from the centre as a third coordinate
-/// (LampFrame), moved so that their mean is the centre. With N of them, what varies smoothly over
-/// the lamp is off by about 1/N^2, and the light in a penumbra by about 0.7/N of the lamp's
-/// (RMS), 2.4/N at worst, for N = 32.
+/// The points are a golden-ratio lattice, shifted so that their mean is the centre. On a disk the
+/// first coordinate is the area within the radius (Vogel's spiral); in a sphere the third one is
+/// the light within the radius (LampFrame). With N points, an integral over the lamp of what varies
+/// smoothly has an error of about 1/N^2, and the light in a penumbra one of about 0.7/N of the
+/// lamp's light (RMS), 2.4/N at worst, for N = 32.
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Affine& world_from_camera, std::vector<Lamp>& emitters);
 
-/// The light of a volume as a lamp at the middle of it, with all of its intensity.
+/// Builds a lamp at the centre of a volume's light, with all of its intensity.
 Lamp make_lamp(const LampDesc& desc, std::span<const EmissivePart> parts);
 
-/// Appends a point for each of the `parts` of `lamp`, the light of a volume.
+/// Appends a point for each of the `parts` of `lamp`, an emissive volume.
 void append_emitters(const Lamp& lamp, std::size_t index, std::span<const EmissivePart> parts,
                      std::vector<Lamp>& emitters);
 
@@ -48,13 +48,13 @@ void append_emitters(const Lamp& lamp, std::size_t index, std::span<const Emissi
 void append_surface(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                     const Affine& world_from_camera, std::vector<LampSurface>& surfaces);
 
-/// The light of the sky, `desc.sky`, as the scene's lamp `index`: parallel light from each of the
-/// directions that stand for it, refracted by the water's surface.
+/// Build the light of the sky, `desc.sky`, as the scene's lamp `index`: parallel light from each of
+/// the directions that represent it, refracted by the water's surface.
 Lamp make_lamp(const LampDesc& desc, const Sky& sky);
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Sky& sky, std::vector<Lamp>& emitters);
 
-/// Appends the mirror image of each emitter from `first` on that stands below the surface, in
+/// Appends the mirror image of each emitter from `first` on that lies below the surface, in
 /// their order.
 void append_mirror_images(const WaterSurface& surface, std::size_t first,
                           std::vector<Lamp>& emitters);

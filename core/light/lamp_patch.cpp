@@ -12,10 +12,11 @@ namespace uw {
 
 namespace {
 
-constexpr int k_points_along = 8;  // for a patch's middle and covariance, to 2 % of the latter
+constexpr int k_points_along = 8;  // for a patch's mean and covariance, to 2 % of the latter
 
-// Which r/R of a sphere of radius R a share `inside` of its light comes from. With r = R sin t, the
-// light within r is in proportion to t - sin t cos t, whose derivative is 2 sin^2 t.
+// Inverts the cumulative distribution of a sphere's light: returns the r/R within which a fraction
+// `inside` of it is emitted. With r = R sin t, the light within r is proportional to t - sin t cos
+// t, whose derivative is 2 sin^2 t.
 double sphere_radius(double inside) {
     const double wanted = 0.5 * std::numbers::pi * inside;
     double low = 0, high = 0.5 * std::numbers::pi;
@@ -101,7 +102,7 @@ Matrix3 LampPatch::covariance() const {
 
 namespace {
 
-// How long the unit cube's sides are on the surface, in the mean; flat ones have no third.
+// The mean lengths of the unit cube's sides on the surface; flat ones have no third.
 UnitPoint lengths_of(const LampExtentDesc& extent) {
     switch (extent.shape) {
         case LampExtentDesc::Shape::disk:
@@ -137,9 +138,10 @@ class Division {
             if (length(side) > length(along)) along = side;
         const std::size_t half = points.size() / 2;
         std::ranges::sort(points, {}, [&](std::size_t i) { return places_[i].*along; });
-        const double share = static_cast<double>(half) / static_cast<double>(points.size());
+        const double fraction = static_cast<double>(half) / static_cast<double>(points.size());
         UnitPoint first_end = end, second_begin = begin;
-        first_end.*along = second_begin.*along = begin.*along + share * (end.*along - begin.*along);
+        first_end.*along = second_begin.*along =
+                               begin.*along + fraction * (end.*along - begin.*along);
         divide(points.first(half), begin, first_end);
         divide(points.subspan(half), second_begin, end);
     }

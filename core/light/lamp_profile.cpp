@@ -73,11 +73,11 @@ void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector
         s.push_back(root);
 }
 
-AxisApproach approach_to_axis(const Ray& ray, const Interval& stretch, const Point3& apex,
+AxisApproach approach_to_axis(const Ray& ray, const Interval& interval, const Point3& apex,
                               const Vector3& axis) {
-    AxisApproach nearest{stretch.begin, -1};
-    for (const double s : {stretch.begin, stretch.end, extremal_angle(ray, apex, axis)}) {
-        if (!(s >= stretch.begin && s <= stretch.end)) continue;
+    AxisApproach nearest{interval.begin, -1};
+    for (const double s : {interval.begin, interval.end, extremal_angle(ray, apex, axis)}) {
+        if (!(s >= interval.begin && s <= interval.end)) continue;
         const Vector3 x = ray.at(s) - apex;
         const double cosine = glm::dot(x, axis) / glm::length(x);
         if (cosine > nearest.cosine) nearest = {s, cosine};  // not at the apex itself: NaN
@@ -127,7 +127,7 @@ SpotProfile::SpotProfile(const SpotProfileDesc& desc, const LampPlacement& place
       full_angle_(glm::radians(std::max(0.0, 0.5 * (desc.beam - desc.edge)))),
       cos_full_(std::cos(full_angle_)) {
     if (is_blenders(falloff_)) {
-        // Blend is a share of the angle in Blender's cones, but of 1 - cos in its shading.
+        // Blend is a fraction of the angle in Blender's cones, but of 1 - cos in its shading.
         const double blend = 1 - full_angle_ / dark_angle_;
         cos_full_ = cos_dark_ + (1 - cos_dark_) * blend;
         full_angle_ = std::acos(std::min(1.0, cos_full_));
@@ -187,11 +187,11 @@ double SpotProfile::solid_angle() const {
     return full + edge_solid_angle(full_angle_, dark_angle_);
 }
 
-void SpotProfile::append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+void SpotProfile::append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                                 std::vector<double>& s) const {
     for (const double cosine : core_cones_) append_cone_crossings(ray, apex, axis_, cosine, s);
     if (cos_dark_ == cos_full_) return;
-    const AxisApproach nearest = approach_to_axis(ray, stretch, apex, axis_);
+    const AxisApproach nearest = approach_to_axis(ray, interval, apex, axis_);
     if (nearest.cosine <= cos_dark_) return;
     // The edge begins where the ray comes nearest to the axis: a ray that grazes the beam sees only
     // a narrow peak.
@@ -207,7 +207,7 @@ void SpotProfile::append_breaks(const Ray& ray, const Interval& stretch, const P
 namespace {
 
 constexpr int k_breaks = 8;  // to either side of where a ray is brightest: down to 4e-5 of it
-// What a ray may be lit by at least, relative to the axis, to be worth any breaks.
+// A ray whose greatest relative intensity is less than this gets no breaks.
 constexpr double k_negligible = 1e-12;
 
 }  // namespace
@@ -333,8 +333,9 @@ LampProfile softened(const LampProfile& profile, const Vector3& offset, const Ma
 CosineProfile::CosineProfile(const CosineProfileDesc& desc, const LampPlacement& placement)
     : axis_(placement.axis()),
       exponent_(std::log(0.5) / std::log(std::cos(glm::radians(0.5 * desc.fwhm)))) {
-    // A cosine beam is smooth but may be narrow: across it a ray sees very nearly a Gaussian, as
-    // wide wherever it passes. Break it at odd multiples of 0.3 standard deviations.
+    // A cosine beam is smooth but may be narrow: along a ray across it the intensity is very nearly
+    // a Gaussian, of the same relative width wherever the ray passes. Break it at odd multiples of
+    // 0.3 standard deviations.
     for (int i = 0; i < k_breaks; ++i) {
         const double deviations = 0.3 * (2 * i + 1);
         break_ratios_.push_back(std::exp(-0.5 * deviations * deviations / exponent_));
@@ -350,9 +351,9 @@ double CosineProfile::solid_angle() const {
     return 2.0 * std::numbers::pi / (exponent_ + 1.0);
 }
 
-void CosineProfile::append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+void CosineProfile::append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                                   std::vector<double>& s) const {
-    const double greatest = approach_to_axis(ray, stretch, apex, axis_).cosine;
+    const double greatest = approach_to_axis(ray, interval, apex, axis_).cosine;
     if (greatest <= 0 || std::pow(greatest, exponent_) < k_negligible) return;
     for (const double ratio : break_ratios_)
         append_cone_crossings(ray, apex, axis_, greatest * ratio, s);
@@ -424,7 +425,7 @@ double IesProfile::relative_intensity(const Vector3& v) const {
     return web_->candelas(polar, azimuth) / web_->peak();
 }
 
-void IesProfile::append_breaks(const Ray& ray, const Interval& /*stretch*/, const Point3& apex,
+void IesProfile::append_breaks(const Ray& ray, const Interval& /*interval*/, const Point3& apex,
                                std::vector<double>& s) const {
     for (const double cosine : cones_) append_cone_crossings(ray, apex, axis_, cosine, s);
     if (breaks_at_equator_) append_plane_crossing(ray, apex, axis_, s);

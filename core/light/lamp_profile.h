@@ -21,8 +21,8 @@ struct LampPlacement {
     Affine world_from_frame;     // of the camera, or of another mount; rigid
     Vector3 direction{0, 0, 1};  // in which the lamp shines, in this frame, unit
 
-    /// Perpendicular to the direction, in the frame, unit: from where angles about the direction
-    /// are counted. The frame's x axis (y if the lamp shines along x), projected.
+    /// The direction from which angles about the lamp's direction are counted, in the frame, unit:
+    /// the frame's x axis (y if the lamp shines along x), projected onto the perpendicular plane.
     Vector3 across() const {
         const Vector3 x(1, 0, 0), y(0, 1, 0);
         const Vector3& reference = glm::length(glm::cross(direction, x)) > 1e-6 ? x : y;
@@ -67,17 +67,17 @@ void append_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& no
 void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector3& side,
                                 const Vector3& normal, std::vector<double>& s);
 
-/// Where on a stretch of a ray the angle to a beam's axis is least.
+/// The point of an interval of a ray at which the angle to a beam's axis is least.
 struct AxisApproach {
     double s = 0;        // distance along the ray
     double cosine = -1;  // of the angle, seen from the beam's apex
 };
 
-/// Finds where `stretch` comes nearest to `axis` (unit), seen from `apex`.
-AxisApproach approach_to_axis(const Ray& ray, const Interval& stretch, const Point3& apex,
+/// Finds where the angle between `interval` and `axis` (unit) at `apex` is least.
+AxisApproach approach_to_axis(const Ray& ray, const Interval& interval, const Point3& apex,
                               const Vector3& axis);
 
-/// Where the angle to `axis` (unit), seen from `apex`, is least or greatest: the azimuth changes
+/// Appends where the angle to `axis` (unit) at `apex` is least or greatest: the azimuth changes
 /// fastest there, and a profile peaked on its axis has a kink.
 void append_nearest_to_axis(const Ray& ray, const Point3& apex, const Vector3& axis,
                             std::vector<double>& s);
@@ -92,7 +92,7 @@ class IsotropicProfile {
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return true; }
     DirectionCone cone() const { return {}; }
-    void append_breaks(const Ray& /*ray*/, const Interval& /*stretch*/, const Point3& /*apex*/,
+    void append_breaks(const Ray& /*ray*/, const Interval& /*interval*/, const Point3& /*apex*/,
                        std::vector<double>& /*s*/) const {}
 
     friend bool operator==(const IsotropicProfile&, const IsotropicProfile&) = default;
@@ -113,18 +113,18 @@ class SpotProfile {
     SpotProfile(const SpotProfileDesc& desc, const LampPlacement& placement);
 
     double relative_intensity(const Vector3& v) const;
-    /// The same at an angle from its axis, 0 to pi [rad].
+    /// The relative intensity at an angle from its axis, 0 to pi [rad].
     double at(double angle) const;
     const Vector3& axis() const { return axis_; }
     double dark_angle() const { return dark_angle_; }
     double full_angle() const { return full_angle_; }
-    /// The same, but with an edge of a few millionths of a radian if it has none.
+    /// The same profile, but with an edge of a few microradians if it has none.
     SpotProfile with_an_edge() const;
     double solid_angle() const;
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return falloff_ != SpotProfileDesc::Falloff::blender_3_4; }
     DirectionCone cone() const { return {axis_, cos_dark_}; }
-    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+    void append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                        std::vector<double>& s) const;
 
     friend bool operator==(const SpotProfile&, const SpotProfile&) = default;
@@ -144,30 +144,30 @@ inline SpotProfile make_profile(const SpotProfileDesc& desc, const LampPlacement
     return {desc, placement};
 }
 
-/// The profile of a spot whose light comes from all over a part of a luminous surface, or of a
-/// sphere, while it stands at one point (IsALampProfile): its edge is as soft as the part is wide.
-/// By their points alone all parts would draw an edge of their own, and all together steps, lobes
-/// and spikes in place of a soft edge.
+/// The profile of a spot at a point that represents a part of a luminous surface, or of a sphere
+/// (IsALampProfile): its edge is as soft as the part is wide. With the sharp profile, each point
+/// would draw its own edge, and together they would draw steps, lobes and spikes instead of a soft
+/// edge.
 ///
-/// Seen from a distance R, displacements of the source with a covariance C move the edge by angles
-/// with the variance u^T C u / R^2, where u is the direction across the edge. The edge keeps its
-/// shape (its falloff, if it has no width), is as wide as its own variance and that one together,
-/// and moves so that the flux at each distance stays that of the spot.
+/// At a distance R, displacements of the source with a covariance C move the edge by angles with
+/// the variance u^T C u / R^2, where u is the direction across the edge. The edge keeps its shape
+/// (that of its falloff, if it has no width); its variance is the sum of its own and that one; and
+/// it moves so that the flux at each distance remains that of the spot.
 class SoftSpotProfile {
   public:
     static constexpr std::string_view k_name = SpotProfile::k_name;
 
-    /// `offset`: from the point to the middle of its part [m]. `covariance`: of the places of the
-    /// part about that middle [m^2].
+    /// `offset`: from the point to the mean of its part [m]. `covariance`: of the part's points
+    /// about that mean [m^2].
     SoftSpotProfile(const SpotProfile& spot, const Vector3& offset, const Matrix3& covariance);
 
-    /// `v` has the length of the way from the point [m].
+    /// `v` leads from the point to where it is evaluated [m].
     double relative_intensity(const Vector3& v) const;
     double solid_angle() const { return spot_.solid_angle(); }
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return false; }
     DirectionCone cone() const;
-    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+    void append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                        std::vector<double>& s) const;
 
     friend bool operator==(const SoftSpotProfile&, const SoftSpotProfile&) = default;
@@ -177,7 +177,7 @@ class SoftSpotProfile {
         double mean, deviation;  // of the angle at which the light ends
         double peak;             // the intensity inside it
     };
-    /// The edge where displacements of the source move it by angles of this variance.
+    /// The edge if displacements of the source move it by angles with this variance [rad^2].
     Edge edge(double displaced) const;
 
     SpotProfile spot_;
@@ -203,9 +203,9 @@ class CosineProfile {
     double solid_angle() const;
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return false; }
-    /// All directions: a half-space is too wide to be worth restricting the search.
+    /// All directions: restricting the search to a half-space would gain little.
     DirectionCone cone() const { return {axis_, -1}; }
-    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+    void append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                        std::vector<double>& s) const;
 
     friend bool operator==(const CosineProfile&, const CosineProfile&) = default;
@@ -243,7 +243,7 @@ class IesProfile {
     const Vector3& axis() const { return axis_; }
     bool has_even_core() const { return false; }
     DirectionCone cone() const { return {axis_, cos_dark_}; }
-    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+    void append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                        std::vector<double>& s) const;
 
     friend bool operator==(const IesProfile&, const IesProfile&) = default;
@@ -271,9 +271,9 @@ class TableProfile {
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return false; }
     DirectionCone cone() const { return of_greatest_.cone(); }
-    void append_breaks(const Ray& ray, const Interval& stretch, const Point3& apex,
+    void append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                        std::vector<double>& s) const {
-        of_greatest_.append_breaks(ray, stretch, apex, s);
+        of_greatest_.append_breaks(ray, interval, apex, s);
     }
 
     friend bool operator==(const TableProfile& a, const TableProfile& b) {
@@ -298,8 +298,8 @@ IesProfile make_profile(const IesProfileDesc& desc, const LampPlacement& placeme
                         std::vector<std::string>& warnings);
 
 /// All profiles, placed in the world: how a lamp's radiant intensity depends on direction. There is
-/// one for each alternative of LampProfileDesc, and beside it a function `make_profile` that
-/// constructs it from its description; and soft ones for parts of lamps.
+/// one for each alternative of LampProfileDesc, with a function `make_profile` that constructs it
+/// from its description, and soft ones for parts of lamps.
 using LampProfile = std::variant<IsotropicProfile, SpotProfile, SoftSpotProfile, CosineProfile,
                                  TableProfile, IesProfile>;
 
@@ -308,9 +308,9 @@ using LampProfile = std::variant<IsotropicProfile, SpotProfile, SoftSpotProfile,
 LampProfile make_lamp_profile(const LampProfileDesc& desc, const LampPlacement& placement,
                               std::vector<std::string>& warnings);
 
-/// The profile of a point that stands for a part of a lamp with an extent (`offset` and
-/// `covariance`: SoftSpotProfile). Those without a steep edge change too little across a part to
-/// differ.
+/// The profile of a point that represents a part of a lamp with an extent (`offset` and
+/// `covariance`: SoftSpotProfile). Profiles without a steep edge vary too little across a part and
+/// are returned as they are.
 LampProfile softened(const LampProfile& profile, const Vector3& offset, const Matrix3& covariance);
 
 /// The requirements on a profile.
@@ -324,12 +324,13 @@ LampProfile softened(const LampProfile& profile, const Vector3& offset, const Ma
 /// - has_even_core(): whether a relative intensity of 1 at a point implies 1 around it, up to a
 ///   break.
 /// - cone(): a cone outside which it is dark.
-/// - append_breaks(ray, stretch, apex, s): appends distances along `ray` so that between those in
-///   `stretch` the profile of a lamp at `apex` is smooth and changes little, as compared with where
-///   it is brightest in that interval: the edges of its beam and cones of equal intensity inside.
+/// - append_breaks(ray, interval, apex, s): appends distances along `ray` so that between those in
+///   `interval` the profile of a lamp at `apex` is smooth and changes little, as compared with
+///   where it is brightest in that interval: the edges of its beam and cones of equal intensity
+///   inside.
 template <class P>
 concept IsALampProfile = requires(const P& profile, const Vector3& v, const Ray& ray,
-                                  const Interval& stretch, const Point3& apex,
+                                  const Interval& interval, const Point3& apex,
                                   std::vector<double>& s) {
     { P::k_name } -> std::convertible_to<std::string_view>;
     { profile.relative_intensity(v) } -> std::same_as<double>;
@@ -337,7 +338,7 @@ concept IsALampProfile = requires(const P& profile, const Vector3& v, const Ray&
     { profile.peak_candelas() } -> std::same_as<std::optional<double>>;
     { profile.has_even_core() } -> std::same_as<bool>;
     { profile.cone() } -> std::same_as<DirectionCone>;
-    profile.append_breaks(ray, stretch, apex, s);
+    profile.append_breaks(ray, interval, apex, s);
 };
 
 }  // namespace uw

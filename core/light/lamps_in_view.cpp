@@ -13,15 +13,15 @@ namespace uw {
 
 namespace {
 
-// A lamp may be that far behind the surface to which it is fixed [m].
+// A lamp may lie this far behind the surface to which it is fixed [m].
 constexpr double k_contact = 1e-4;
-// A flat surface that is seen from within this sine is a line. A profile that does not fall like
-// the cosine makes it brighter without bound there.
+// A flat surface viewed at less than this sine is a line: with a profile that does not fall like
+// the cosine, its radiance would grow without bound there.
 constexpr double k_edge_on = 1e-3;
-// Farther from a point than so many radii of its patch, its light on a ray is its own.
-constexpr double k_patches_aside = 3;
+// The light of a point is not corrected on rays farther from it than this many radii of its patch.
+constexpr double k_corrected_radii = 3;
 
-// From psi = 1e-6, below which no integral has begun, to pi - 1e-4.
+// The table covers psi = 1e-6, below which the integrals are negligible, to pi - 1e-4.
 constexpr double k_min_octave = -21, k_max_octave = 14;
 constexpr int k_knots_per_octave = 32;
 constexpr auto k_knots =
@@ -38,7 +38,7 @@ bool LampSurface::is_passed_by(const Ray& ray) const {
     const double half = frame.extent.shape == LampExtentDesc::Shape::rectangle
                             ? 0.5 * std::hypot(frame.extent.width, frame.extent.height)
                             : frame.extent.radius;
-    const double near = half + k_patches_aside * emitters.patch_radius;
+    const double near = half + k_corrected_radii * emitters.patch_radius;
     return glm::dot(across, across) <= near * near;
 }
 
@@ -74,19 +74,19 @@ LampEvenness::LampEvenness(const LitScene& scene) : scene_(scene) {
     if (scene.lamp_surfaces) integrals_.emplace(*scene.medium);
 }
 
-void LampEvenness::integrate(const LampPoints& points, const Ray& ray, const Interval& stretch,
+void LampEvenness::integrate(const LampPoints& points, const Ray& ray, const Interval& interval,
                              std::span<double> scattered) const {
     std::ranges::fill(scattered, 0.0);
     for (const Point3& position : points.positions) {
         LampPassage passage(ray, position);
         passage.distance = std::sqrt(passage.distance * passage.distance +
-                                     distance_aside(position, points.patch_radius, ray));
+                                     squared_offset(position, points.patch_radius, ray));
         const double factor = 1 / (passage.distance * static_cast<double>(points.positions.size()));
         const auto add = [&](double s, double sign) {
             integrals_->add(passage.half_tangent(s, passage.radius(s)), sign * factor, scattered);
         };
-        add(stretch.end, 1);
-        add(stretch.begin, -1);
+        add(interval.end, 1);
+        add(interval.begin, -1);
     }
 }
 
@@ -94,7 +94,7 @@ Spectrum LampEvenness::one() const {
     return per_band(scene_.medium->wavelengths_nm.size(), [](std::size_t) { return 1.0; });
 }
 
-Spectrum LampEvenness::of(std::size_t lamp, const Ray& ray, const Interval& stretch) const {
+Spectrum LampEvenness::of(std::size_t lamp, const Ray& ray, const Interval& interval) const {
     if (!integrals_) return one();
     const auto surface = std::ranges::find_if(
         *scene_.lamp_surfaces, [&](const LampSurface& s) { return s.lamp.index() == lamp; });
@@ -102,13 +102,13 @@ Spectrum LampEvenness::of(std::size_t lamp, const Ray& ray, const Interval& stre
     thread_local std::vector<double> of_emitters, of_many, concentration;
     of_emitters.resize(integrals_->phase_count());
     of_many.resize(integrals_->phase_count());
-    integrate(surface->emitters, ray, stretch, of_emitters);
-    integrate(surface->many, ray, stretch, of_many);
+    integrate(surface->emitters, ray, interval, of_emitters);
+    integrate(surface->many, ray, interval, of_many);
     const Medium& medium = *scene_.medium;
     concentration.assign(medium.constituents.size(), 0.0);
     const LampPassage passage(ray, surface->lamp.position());
     if (!concentration.empty())
-        scene_.field->sample(ray.at(std::clamp(passage.foot, stretch.begin, stretch.end)),
+        scene_.field->sample(ray.at(std::clamp(passage.foot, interval.begin, interval.end)),
                              concentration);
     return per_band(medium.wavelengths_nm.size(), [&](std::size_t band) {
         double truth = 0, found = 0;
@@ -191,12 +191,13 @@ class ColumnWalk {
 
 }  // namespace
 
-// Between the knots of the grid, a quarter of a voxel apart but where it is constant, the light is
-// linear and the water's columns are smooth: two Gauss nodes for each half of an optical depth.
-void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, double reach,
-                                std::vector<SeenLamp>& seen) const {
+// Between the knots of the grid, which are a quarter of a voxel apart unless it is constant, the
+// grid's value is linear and the columns are smooth: two Gauss nodes per 0.5 of optical depth
+// suffice.
+void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, double max_distance,
+                                std::vector<SeenLamp>& visible) const {
     const ConcentrationField& field = *emissive.volume->field;
-    const double end = std::min(reach, inside(ray, field.bounds()).end);
+    const double end = std::min(max_distance, inside(ray, field.bounds()).end);
     if (!(end > 0)) return;
     thread_local ConcentrationProfile light, water;
     thread_local std::vector<double> column;
@@ -204,7 +205,7 @@ void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, d
     SeenLamp lamp{emissive.lamp, 0, {}, {}, true};
     double weight = 0;
     std::optional<ColumnWalk> columns;
-    // The least and the greatest of the bands.
+    // The least and the greatest optical depth of the bands.
     const auto depths = [&](double s, const std::vector<double>& at) {
         Interval found{k_far, 0};
         for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation_.band_count); ++b) {
@@ -213,7 +214,8 @@ void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, d
         }
         return found;
     };
-    constexpr double k_piece = 0.5, k_deep = 20;  // optical depths; no light comes from so deep
+    constexpr double k_piece = 0.5,
+                     k_deep = 20;  // optical depths; beyond the latter e^-tau is negligible
     constexpr int k_most = 64;
     for (std::size_t knot = 0; knot + 1 < light.s.size(); ++knot) {
         if (light.empty_between(knot)) continue;
@@ -247,23 +249,24 @@ void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, d
     }
     if (weight == 0) return;
     lamp.distance /= weight;
-    seen.push_back(lamp);
+    visible.push_back(lamp);
 }
 
-void LampsInView::append(const Ray& ray, double reach, std::vector<SeenLamp>& seen) const {
+void LampsInView::append(const Ray& ray, double max_distance,
+                         std::vector<SeenLamp>& visible) const {
     if (scene_.emissions)
         for (const SceneEmission& emissive : *scene_.emissions)
-            append_volume(emissive, ray, reach, seen);
+            append_volume(emissive, ray, max_distance, visible);
     if (!scene_.lamp_surfaces) return;
     for (const LampSurface& surface : *scene_.lamp_surfaces) {
         const double distance = surface.crossing(ray);
-        if (!(distance < reach + k_contact && distance < k_far)) continue;
+        if (!(distance < max_distance + k_contact && distance < k_far)) continue;
         const double radiance = surface.radiance_towards(ray);
         if (radiance == 0) continue;
         thread_local std::vector<double> column;
         column.assign(scene_.medium->constituents.size(), 0.0);
         if (!column.empty()) scene_.field->column(ray.origin, ray.at(distance), column);
-        SeenLamp& lamp = seen.emplace_back();
+        SeenLamp& lamp = visible.emplace_back();
         lamp.lamp = surface.lamp.index();
         lamp.distance = distance;
         lamp.radiance = radiance * surface.lamp.axis_intensity();

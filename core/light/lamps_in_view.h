@@ -15,10 +15,10 @@
 
 namespace uw {
 
-/// Points that stand for a luminous surface, each for as much of it.
+/// Points that represent a luminous surface, each the same area of it.
 struct LampPoints {
     std::vector<Point3> positions;
-    double patch_radius = 0;  // distance_aside
+    double patch_radius = 0;  // squared_offset
 };
 
 /// The luminous surface of a lamp with an extent, in the world.
@@ -26,22 +26,23 @@ struct LampSurface {
     Lamp lamp;  // all of it, at its centre
     LampFrame frame;
     LampPoints emitters;  // as in LitScene::emitters
-    LampPoints many;      // so many that they are as good as the surface
+    LampPoints many;      // enough of them to be as accurate as the surface
 
-    /// Whether the light of the emitters that is scattered on `ray` may differ from that of the
-    /// surface: only where the ray passes it closely.
+    /// Whether the in-scatter from the emitters on `ray` may differ from that of the surface, as it
+    /// does only where the ray passes it closely.
     bool is_passed_by(const Ray& ray) const;
-    /// Where `ray` crosses the surface, or passes the centre of a sphere [m]; infinite if it does
-    /// not.
+    /// The distance at which `ray` crosses the surface, or passes the centre of a sphere that it
+    /// hits [m]; infinite if it misses.
     double crossing(const Ray& ray) const;
     /// Its radiance towards the origin of a ray that crosses it, for 1 W/sr on the axis [1/m^2]:
-    /// relative intensity over the area that is seen. 0 for a surface that is seen edge-on.
+    /// the relative intensity over the projected area; 0 for a surface that is viewed edge-on.
     double radiance_towards(const Ray& ray) const;
 };
 
-/// The integral of each phase function p of a medium over the scattering angle, int_0^psi p dpsi:
-/// as ds / R^2 = dpsi / D on a ray at the distance D from a point, it is what the point scatters
-/// there, if nothing else changes along the ray (physics section 5). Tabulated over tan(psi / 2).
+/// The integral of each phase function p of a medium over the scattering angle, int_0^psi p dpsi.
+/// As ds / R^2 = dpsi / D on a ray at the distance D from a point, D times the in-scatter from that
+/// point has this integral if nothing else varies along the ray (physics section 5; the change of
+/// variable of equiangular sampling, Kulla and Fajardo 2012). Tabulated over tan(psi / 2).
 class PhaseIntegrals {
   public:
     explicit PhaseIntegrals(const Medium& medium);
@@ -56,27 +57,27 @@ class PhaseIntegrals {
     std::vector<double> integrals_;  // [knot * phases + m]
 };
 
-/// By what the light that the emitters of a lamp with an extent scatter on a ray is corrected, so
-/// that it is that of the lamp's surface, without a pattern of points. Thread safe.
+/// The factor that corrects the in-scatter from the emitters of a lamp with an extent to that from
+/// the lamp's surface, so that no pattern of points is visible. Thread safe.
 class LampEvenness {
   public:
     /// What `scene` refers to must outlive this object.
     explicit LampEvenness(const LitScene& scene);
 
-    /// The light that the surface of the lamp with this index scatters on a stretch of a ray, in
-    /// proportion to that of its emitters, per band: 1 for a lamp without an extent, and but for
-    /// rays that pass the surface closely. Shadows, profiles and attenuation are left out; the
-    /// water is that where the ray is nearest to the lamp.
-    Spectrum of(std::size_t lamp, const Ray& ray, const Interval& stretch) const;
+    /// The ratio, per band, of the in-scatter from the surface of the lamp with this index to that
+    /// from its emitters, on an interval of a ray: 1 for a lamp without an extent, and for rays
+    /// that do not pass the surface closely. It ignores shadows, profiles and attenuation, and
+    /// takes the water from where the ray is nearest to the lamp.
+    Spectrum of(std::size_t lamp, const Ray& ray, const Interval& interval) const;
 
-    /// Finds the same for each stretch of a ray between `begin` and the ascending `distances`.
+    /// Finds that ratio for each interval of a ray between `begin` and the ascending `distances`.
     void find(std::size_t lamp, const Ray& ray, double begin, std::span<const double> distances,
               std::vector<Spectrum>& result) const;
 
   private:
-    // The mean over the points of the integral of each phase function over R^2 along a stretch
+    // The mean over the points of the integral of each phase function over R^2 along an interval
     // [1/(m sr)].
-    void integrate(const LampPoints& points, const Ray& ray, const Interval& stretch,
+    void integrate(const LampPoints& points, const Ray& ray, const Interval& interval,
                    std::span<double> scattered) const;
     Spectrum one() const;
 
@@ -84,30 +85,30 @@ class LampEvenness {
     std::optional<PhaseIntegrals> integrals_;  // none: no lamp of the scene has an extent
 };
 
-/// A lamp whose luminous surface, or glowing volume, a ray crosses.
+/// A lamp whose luminous surface, or emissive volume, a ray crosses.
 struct SeenLamp {
     std::size_t lamp = 0;    // its index in the scene
-    double distance = 0;     // along the ray, of a volume's light in the mean [m]
-    Spectrum radiance;       // before the water dims it [W m^-2 sr^-1]
-    Spectrum arriving;       // what of that arrives at the ray's origin
+    double distance = 0;     // along the ray; for a volume, the mean over its emission [m]
+    Spectrum radiance;       // before attenuation by the water [W m^-2 sr^-1]
+    Spectrum arriving;       // the radiance at the ray's origin
     bool is_volume = false;  // not a surface
 };
 
-/// What the camera sees of lamps themselves. A luminous surface adds its light to what is behind
-/// it: as it throws no shadow, it hides nothing. A volume's light is the integral of what it gives
-/// off along the ray, int emission e^-tau ds. Thread safe.
+/// The light of lamps that the camera sees directly. A luminous surface adds its light to that from
+/// behind it: it casts no shadow and occludes nothing. The light of a volume is the integral of its
+/// emission along the ray, int emission e^-tau ds. Thread safe.
 class LampsInView {
   public:
     /// `scene` must outlive this object.
     explicit LampsInView(const LitScene& scene) : scene_(scene), attenuation_(*scene.medium) {}
 
-    /// Appends the lamps that `ray` crosses up to the surface at `reach` [m]; one that lies on that
-    /// surface is before it.
-    void append(const Ray& ray, double reach, std::vector<SeenLamp>& seen) const;
+    /// Appends the lamps that `ray` crosses before the surface at `max_distance` [m], one that lies
+    /// on that surface included.
+    void append(const Ray& ray, double max_distance, std::vector<SeenLamp>& visible) const;
 
   private:
-    void append_volume(const SceneEmission& emissive, const Ray& ray, double reach,
-                       std::vector<SeenLamp>& seen) const;
+    void append_volume(const SceneEmission& emissive, const Ray& ray, double max_distance,
+                       std::vector<SeenLamp>& visible) const;
 
     LitScene scene_;
     AttenuationTable attenuation_;

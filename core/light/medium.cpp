@@ -23,7 +23,8 @@ Spectrum AttenuationTable::transmittance(double length, std::span<const double> 
 
 namespace {
 
-// From psi = 1.2e-7, below which none of our phase functions varies by more than 2 %, to pi - 1e-4.
+// The table covers psi = 1.2e-7, below which none of our phase functions varies by more than 2 %,
+// to pi - 1e-4.
 constexpr double k_least = 0x1p-24, k_most = 0x1p14;
 constexpr int k_cell_bits = 6;  // of the mantissa: 64 cells per octave
 constexpr int k_offset_bits = 52 - k_cell_bits;

@@ -132,13 +132,13 @@ class PhaseTable {
     std::vector<double> coefficients_;  // [(cell * phases + m) * 3 + power]
 };
 
-/// How far columns may be from the truth, in terms of the light that passes them: an error counts
-/// as the optical depth that it amounts to in the band that attenuates most, times a bound on the
-/// transmittance of the path that leads there. What lies behind much optical depth, or changes
-/// little, may thus be coarse.
+/// The permitted error of columns, in terms of transmitted light: an error is measured as the
+/// optical depth that it amounts to in the band that attenuates most, times an upper bound on the
+/// transmittance of the path up to there. What lies behind a great optical depth, or varies little,
+/// may thus be coarse.
 class DepthTolerance {
   public:
-    /// None: as exact as voxels allow.
+    /// Permits no error: columns are as exact as voxels allow.
     DepthTolerance() = default;
     /// `optical_depth`: the greatest error of one step of an integration or interpolation.
     DepthTolerance(const Medium& medium, double optical_depth);
@@ -149,7 +149,7 @@ class DepthTolerance {
     /// `before` and `length` metres of water.
     bool allows(std::span<const double> error, double length, std::span<const double> before) const;
 
-    /// An optical depth that no band falls short of.
+    /// A lower bound on the optical depth of all bands.
     double min_depth(double length, std::span<const double> columns) const;
 
     friend bool operator==(const DepthTolerance&, const DepthTolerance&) = default;
@@ -182,14 +182,15 @@ struct ConcentrationProfile {
     void integrate();
 };
 
-/// Gathers the derivatives of some number by the values of a field's voxels, from those by what the
-/// field says of points and ways: the transpose of ConcentrationField. For one thread.
+/// Accumulates the derivatives of some number by the values of a field's voxels, from those by its
+/// samples at points and its columns along paths: the transpose of ConcentrationField. For one
+/// thread.
 class FieldGradient {
   public:
     virtual ~FieldGradient() = default;
     /// The number changes by weights[k] per unit of constituent k at `x`.
     virtual void add_sample(const Point3& x, std::span<const double> weights) = 0;
-    /// And by weights[k] per unit of its column from `a` to `b`.
+    /// The number changes by weights[k] per unit of the column of constituent k from `a` to `b`.
     virtual void add_column(const Point3& a, const Point3& b, std::span<const double> weights) = 0;
 };
 
@@ -200,9 +201,9 @@ class ConcentrationField {
     virtual ~ConcentrationField() = default;
 
     virtual int constituent_count() const = 0;
-    /// What of it depends on depth alone; null: nothing does.
+    /// The part that depends on depth alone; null if there is none.
     virtual std::shared_ptr<const Strata> strata() const { return nullptr; }
-    /// The rest, which has voxels and ends somewhere.
+    /// The other part, which consists of voxels and has finite bounds.
     virtual const ConcentrationField& grids() const { return *this; }
     /// World bounds outside which every concentration is zero; empty if all are zero everywhere.
     virtual Bounds bounds() const = 0;
@@ -219,13 +220,13 @@ class ConcentrationField {
     /// `profile` is reused storage and is overwritten. Intervals without particles take two knots.
     virtual void profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const = 0;
 
-    /// The same with a knot every voxel, for estimates by many rays: the columns' errors nearly
-    /// cancel over rays in all directions, but for the edges of what is cut off sharply.
+    /// The same with one knot per voxel, for estimates by many rays: the columns' errors nearly
+    /// cancel over rays in all directions, except at sharp edges.
     virtual void coarse_profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const {
         this->profile(ray, s_end, profile);
     }
 
-    /// The same as profile with as few knots as `tolerance` allows.
+    /// As profile(), with as few knots as `tolerance` permits.
     virtual void profile_within(const DepthTolerance& /*tolerance*/, const Ray& ray, double s_end,
                                 ConcentrationProfile& profile) const {
         this->profile(ray, s_end, profile);

@@ -124,15 +124,15 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
     w.path.clear();
     w.weight.clear();
     w.psi.clear();
-    const double aside = lamp.aside(ray);
+    const double squared_offset = lamp.squared_offset(ray);
     for (std::size_t i = 0; i < w.samples.size(); ++i) {
         const Sample& sample = w.samples[i];
         const Point3 x = ray.at(sample.s);
         const Point3 origin = lamp.origin(x);
         const Vector3 from_lamp = x - origin;
-        const double radius = std::sqrt(glm::dot(from_lamp, from_lamp) + aside);
+        const double radius = std::sqrt(glm::dot(from_lamp, from_lamp) + squared_offset);
         const double relative =
-            lamp.holds(radius) ? 0.0 : lamp.relative_intensity(from_lamp) * lamp.focus(x);
+            lamp.contains(radius) ? 0.0 : lamp.relative_intensity(from_lamp) * lamp.focus(x);
         if (relative <= 0 || scene_.surfaces->occluded(origin, x)) continue;
         w.lit.push_back(i);
         w.path.push_back(radius + sample.s);
@@ -140,7 +140,7 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
         // Angle between the directions of travel, lamp to X and X to camera; atan2 is accurate near
         // pi.
         const Vector3 across = glm::cross(ray.direction, from_lamp);
-        w.psi.push_back(std::atan2(std::sqrt(glm::dot(across, across) + aside),
+        w.psi.push_back(std::atan2(std::sqrt(glm::dot(across, across) + squared_offset),
                                    -glm::dot(ray.direction, from_lamp)));
     }
     const auto bands = static_cast<std::size_t>(medium.band_count());

@@ -16,8 +16,8 @@ LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
 LampPassage::LampPassage(const Ray& ray, const Lamp& lamp) : LampPassage(ray, lamp.position()) {
     const Sunlight* const sun = lamp.sunlight();
     if (!sun) {
-        if (const double aside = lamp.aside(ray); aside != 0)
-            distance = std::sqrt(distance * distance + aside);
+        if (const double squared_offset = lamp.squared_offset(ray); squared_offset != 0)
+            distance = std::sqrt(distance * distance + squared_offset);
         return;
     }
     parallel = true;
@@ -34,16 +34,16 @@ void append_octaves(const LampPassage& passage, const Interval& interval, std::v
         if (at > interval.begin && at < interval.end) s.push_back(at);
     };
     append(passage.foot);
-    const double reach =
+    const double max_offset =
         std::max(std::abs(interval.begin - passage.foot), std::abs(interval.end - passage.foot));
-    for (double u = 0.75 * std::max(passage.distance, k_lamp_radius); u < reach; u *= 2) {
+    for (double u = 0.75 * std::max(passage.distance, k_lamp_radius); u < max_offset; u *= 2) {
         append(passage.foot - u);
         append(passage.foot + u);
     }
 }
 
 Interval inside(const Ray& ray, const Bounds& bounds) {
-    Interval stretch{0, k_far};
+    Interval interval{0, k_far};
     if (bounds.empty()) return {1, 0};
     for (int axis = 0; axis < 3; ++axis) {
         const double d = ray.direction[axis];
@@ -51,22 +51,22 @@ Interval inside(const Ray& ray, const Bounds& bounds) {
         const double to_max = bounds.max[axis] - ray.origin[axis];
         if (d == 0 && (to_min > 0 || to_max < 0)) return {1, 0};
         if (d == 0) continue;
-        stretch.begin = std::max(stretch.begin, std::min(to_min / d, to_max / d));
-        stretch.end = std::min(stretch.end, std::max(to_min / d, to_max / d));
+        interval.begin = std::max(interval.begin, std::min(to_min / d, to_max / d));
+        interval.end = std::min(interval.end, std::max(to_min / d, to_max / d));
     }
-    return stretch;
+    return interval;
 }
 
-void PanelBreaks::reset(const Interval& stretch) {
-    stretch_ = stretch;
+void PanelBreaks::reset(const Interval& interval) {
+    interval_ = interval;
     candidates_.clear();
 }
 
 const std::vector<double>& PanelBreaks::kept() {
     std::sort(candidates_.begin(), candidates_.end(),
               [](const Candidate& a, const Candidate& b) { return a.s < b.s; });
-    candidates_.push_back({stretch_.end, 0});
-    kept_.assign(1, stretch_.begin);
+    candidates_.push_back({interval_.end, 0});
+    kept_.assign(1, interval_.begin);
     double spacing_of_last = 0;
     for (const Candidate& candidate : candidates_) {
         const double since_last = candidate.s - kept_.back();

@@ -19,7 +19,7 @@ namespace {
 constexpr double k_extinct_optical_depth = 15;
 // Steps among particles are a tenth of an optical depth: this many times the step that is given.
 constexpr double k_depth_of_steps = 20;
-// What is behind this optical depth adds less than 1e-17 of all light.
+// Water behind this optical depth adds less than 1e-17 of all light.
 constexpr double k_dark = 40;
 
 LightTransport make_reference(const IntegratorInputs& inputs) {
@@ -49,20 +49,21 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
         attenuation_.uniform.greatest(static_cast<std::size_t>(attenuation_.band_count));
     for (std::size_t j = 0; j < emitters.size(); ++j) {
         const LampPassage passage(ray, emitters[j]);
-        const double reach = min_c > 0 ? passage.reach(k_extinct_optical_depth / min_c) : k_far;
+        const double max_distance =
+            min_c > 0 ? passage.max_distance(k_extinct_optical_depth / min_c) : k_far;
         const auto scale_at = [&](double s) {
-            // Ten times as far as the densest band's light reaches only the others' is left, of
-            // which steps of that length in proportion are as small a part.
+            // Beyond ten attenuation lengths of the densest band only the other bands matter, whose
+            // light varies over lengths proportional to the distance.
             if (passage.parallel)
                 return max_c > 0 ? std::max(1 / max_c, 0.1 * s) / (1 + passage.rate()) : k_far;
             return std::max(passage.radius(s), k_lamp_radius);
         };
         // The water's surface may be less than a step away.
         const Interval lit =
-            passage.parallel ? emitters[j].beam(ray, {0, reach}) : Interval{0, reach};
+            passage.parallel ? emitters[j].beam(ray, {0, max_distance}) : Interval{0, max_distance};
         Spectrum sum;
         double s = lit.begin;
-        double depth = 0;  // of the grid before s, in the band that sees farthest
+        double depth = 0;  // of the grid before s, in the band with the least attenuation
         for (std::size_t i = 0; i < distances.size(); ++i) {
             const double end = std::min(distances[i], lit.end);
             const Spectrum even = evenness_.of(emitters[j].index(), ray,
@@ -106,13 +107,13 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     const Point3 x = ray.at(s);
     const Point3 origin = lamp.origin(x);
     const Vector3 from_lamp = x - origin;
-    const double aside = lamp.aside(ray);
-    const double radius = std::sqrt(glm::dot(from_lamp, from_lamp) + aside);
+    const double squared_offset = lamp.squared_offset(ray);
+    const double radius = std::sqrt(glm::dot(from_lamp, from_lamp) + squared_offset);
     const double relative = lamp.relative_intensity(from_lamp) * lamp.focus(x);
-    if (lamp.holds(radius) || relative <= 0 || scene_.surfaces->occluded(origin, x)) return {};
+    if (lamp.contains(radius) || relative <= 0 || scene_.surfaces->occluded(origin, x)) return {};
     // psi is the angle between the directions of travel: w_in = from_lamp, w_out = -ray.direction.
     const Vector3 across = glm::cross(from_lamp, ray.direction);
-    const double psi = std::atan2(std::sqrt(glm::dot(across, across) + aside),
+    const double psi = std::atan2(std::sqrt(glm::dot(across, across) + squared_offset),
                                   -glm::dot(from_lamp, ray.direction));
     const std::size_t constituents = medium.constituents.size();
     std::vector<double> from_lamp_column(constituents), to_camera_column(constituents),
@@ -153,9 +154,9 @@ void check_uniform(const LitScene& scene) {
 
 }  // namespace
 
-/// The integral of one lamp's light along one ray over the angle psi; of a sun's, whose angle is
-/// the same all along it, over -e^(-c s), with the least c, in which its attenuation is nearly
-/// linear.
+/// The integral of one lamp's light along one ray over the angle psi. For a sun, whose angle is the
+/// same all along the ray, it is over -e^(-c s) with the least c of the bands, in which its
+/// attenuation is nearly linear.
 class QuadratureIntegrator::RayIntegral {
   public:
     RayIntegral(const QuadratureIntegrator& owner, const Ray& ray, const Lamp& lamp)
@@ -171,7 +172,7 @@ class QuadratureIntegrator::RayIntegral {
         // A ray straight through the lamp has no angle to integrate over, but one that narrowly
         // misses it does.
         const Vector3 across = to_lamp - foot_ * ray.direction;
-        distance_ = std::max(1e-9, std::sqrt(glm::dot(across, across) + lamp.aside(ray)));
+        distance_ = std::max(1e-9, std::sqrt(glm::dot(across, across) + lamp.squared_offset(ray)));
     }
 
     /// In-scatter from `begin` to `end` along the ray.
@@ -196,7 +197,7 @@ class QuadratureIntegrator::RayIntegral {
     }
 
   private:
-    // The variable of the integral.
+    // The variable of integration.
     double variable(double s) const {
         return lamp_.sunlight() ? -std::exp(-rate_ * s) : std::atan2(distance_, foot_ - s);
     }
@@ -297,7 +298,7 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
         for (std::size_t b = 0; b < bands; ++b)
             transmittance[b] = std::exp(-attenuation_.uniform[b] * length);
     };
-    find_half_shades(scene_, samples, light.visible_shares());
+    find_half_shades(scene_, samples, light.visibilities());
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const auto& [ray, hit, x, y] = *samples[i];
         set_transmittance(light.to_camera(i), distance(ray.origin, hit.position));
@@ -310,10 +311,11 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
                                          glm::dot(hit.normal, v) /
                                          (lamp.spread(std::sqrt(r2)) * std::sqrt(r2));
             if (geometry_term <= 0 || glm::dot(hit.geometric_normal, v) <= 0) continue;
-            double& share = light.visible_share(i, j);
-            if (!lamp.is_part()) share = scene_.surfaces->occluded(origin, hit.position) ? 0 : 1;
-            if (share == 0) continue;
-            light.geometry_term(i, j) = share * geometry_term;
+            double& visibility = light.visibility(i, j);
+            if (!lamp.is_part())
+                visibility = scene_.surfaces->occluded(origin, hit.position) ? 0 : 1;
+            if (visibility == 0) continue;
+            light.geometry_term(i, j) = visibility * geometry_term;
             set_transmittance(light.from_emitter(i, j), std::sqrt(r2));
         }
     }

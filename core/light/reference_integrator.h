@@ -18,17 +18,18 @@ class ReferenceIntegrator final : public Integrator {
     /// For any scene; meant for comparison, so every pixel is integrated by itself.
     static const IntegratorKind k_kind;
 
-    /// `step`: step length relative to the distance from the lamp, or, for a sun, to that over
-    /// which its light falls to 1/e, from ten times that distance on growing with it; inside the
-    /// field's bounds, steps are never longer than a quarter of the finest voxel, nor than 20
-    /// `step` optical depths. The error falls as step^2, but only as step at shadow edges.
+    /// `step`: step length relative to the distance from the lamp; for a sun, relative to the
+    /// distance over which its light falls to 1/e, or to a tenth of the distance along the ray if
+    /// that is greater. Inside the field's bounds, steps are never longer than a quarter of the
+    /// finest voxel, nor than an optical depth of 20 `step`. The error falls as step^2, but only as
+    /// step at shadow edges.
     explicit ReferenceIntegrator(const LitScene& scene, double step = 0.005);
 
     void in_scatter(const Ray& ray, std::span<const double> distances,
                     InScatter& result) const override;
 
   private:
-    /// The least and the greatest of the bands [1/m].
+    /// The least and the greatest attenuation coefficient of the bands [1/m].
     std::pair<double, double> attenuation_at(const Point3& x) const;
     /// In-scatter per metre at distance `s` of `ray` from lamp `lamp` [W m^-3 sr^-1].
     Spectrum in_scatter_per_metre(const Ray& ray, double s, std::size_t lamp) const;

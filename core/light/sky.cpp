@@ -43,7 +43,7 @@ namespace {
 /// The luminous efficacy of light at 555 nm [lm/W].
 constexpr double k_lumens_per_watt_of_sky = 683;
 
-/// Of M1 and M2 (CIE 15:2004).
+/// The factors M1 and M2 of the daylight components (CIE 15:2004).
 struct DaylightFactors {
     double m1, m2;
 
@@ -106,10 +106,9 @@ struct Sky::Quadrature {
             column_cosines.push_back(std::cos(azimuth));
         }
     }
-    // Gauss's rule with two nodes in each of so many intervals of the cosine is exact for what is
-    // cubic in it within them, and the midpoint rule converges quickly for what is periodic.
-    // `first`: the azimuth at which columns begin, the sun's, so that they are the same on both
-    // sides of it.
+    // Gauss's rule with two nodes in each interval of the cosine is exact for cubics, and the
+    // midpoint rule converges quickly for periodic functions. `first`: the azimuth at which columns
+    // begin, that of the sun, so that they are symmetric about it.
     static Quadrature even(double first) {
         constexpr int k_intervals = 64;
         constexpr std::size_t k_columns = 256;
@@ -174,11 +173,12 @@ class Sky::Distribution {
     Distribution(Distribution&&) = delete;
     Distribution& operator=(Distribution&&) = delete;
 
-    /// Towards the sky, sky space, unit, z >= 0.
+    /// `towards`: the sky, in sky space, unit, z >= 0.
     virtual Spectrum radiance(const Vector3& towards) const = 0;
-    /// Relative luminance. Where there is none, lux become watts through a spectrum.
+    /// Relative luminance; none if lux are converted to watts by a spectrum instead.
     virtual std::optional<double> luminance(const Vector3& /*towards*/) const { return {}; }
-    /// All of it, with its radiance; `sun`: the azimuth of the sun, counterclockwise from east.
+    /// A quadrature of the whole sky with its radiance; `sun`: the azimuth of the sun,
+    /// counterclockwise from east.
     virtual Sky::Quadrature quadrature(std::size_t bands, double sun) const {
         Quadrature result = Quadrature::even(sun);
         result.fill(bands, [&](const Vector3& towards) { return radiance(towards); });
@@ -188,7 +188,7 @@ class Sky::Distribution {
 
 namespace {
 
-/// Uniform, or the CIE's overcast sky: grey.
+/// A grey sky: uniform, or the CIE's overcast sky.
 class GreySky : public Sky::Distribution {
   public:
     /// `rise`: how much brighter the zenith is than the horizon, relative to the horizon.
@@ -220,7 +220,7 @@ struct PerezDistribution {
     }
     // `cosine` of the angle from the zenith, >= 0; `gamma` from the sun.
     double value(double cosine, double gamma, double cos_gamma) const {
-        // b < 0: nothing is left of the exponential at the horizon.
+        // b < 0: the exponential vanishes at the horizon.
         const double gradient = cosine > 0 ? 1 + a * std::exp(b / cosine) : 1;
         return gradient * (1 + c * std::exp(d * gamma) + e * cos_gamma * cos_gamma);
     }
@@ -256,7 +256,7 @@ constexpr std::array<std::array<double, 4>, 3> k_y_zenith{{
     {0.15346, -0.26756, 0.06670, 0.26688}}};
 // clang-format on
 
-/// Preetham's.
+/// The clear sky of Preetham, Shirley and Smits 1999.
 class ClearSky : public Sky::Distribution {
   public:
     ClearSky(double turbidity, const Vector3& sun, std::span<const double> bands_nm)
@@ -292,7 +292,7 @@ class ClearSky : public Sky::Distribution {
 
         Place(const Vector3& towards, const Vector3& sun) : cosine(towards.z) {
             cos_gamma = std::clamp(glm::dot(towards, sun), -1.0, 1.0);
-            // By the chord: an arc cosine loses half of the digits at the sun.
+            // Computed from the chord, as an arc cosine loses half of the digits at the sun.
             gamma = 2 * std::asin(std::min(1.0, 0.5 * glm::length(towards - sun)));
         }
         double of(const PerezDistribution& perez) const {
@@ -300,7 +300,7 @@ class ClearSky : public Sky::Distribution {
         }
     };
 
-    // Of each component the mean over each band times the bands' width, and the luminance.
+    // Sets the mean of each component over each band times the bands' width, and its luminance.
     void set_bands(std::span<const double> bands_nm) {
         const std::array<SampledCurve, 3> components = daylight_components();
         const std::vector<BandInterval> intervals = band_intervals(bands_nm);
@@ -341,7 +341,7 @@ class ClearSky : public Sky::Distribution {
     std::array<double, 3> luminance_of_components_{};
 };
 
-/// An image of all directions.
+/// A sky given by an image of all directions.
 class PanoramaSky : public Sky::Distribution {
   public:
     PanoramaSky(const SkyDesc& desc, std::span<const double> bands_nm)
@@ -387,7 +387,8 @@ class PanoramaSky : public Sky::Distribution {
         return to_bands_.from_rgb(sum);
     }
 
-    /// Its pixels, or squares of them, so that a sun of a single one is not missed.
+    /// A quadrature over its pixels, or squares of them, so that a sun of a single pixel is not
+    /// missed.
     Sky::Quadrature quadrature(std::size_t bands, double /*sun*/) const override {
         const int square = square_of_pixels();
         const int columns = pixels_.width() / square;
@@ -418,8 +419,8 @@ class PanoramaSky : public Sky::Distribution {
     int wrapped(int column) const {
         return (column % pixels_.width() + pixels_.width()) % pixels_.width();
     }
-    // The least number of pixels that divides the width into no more columns than that; single ones
-    // if it would leave too few.
+    // The side of the smallest square of pixels that divides the width into at most k_max_columns;
+    // 1 if that would leave too few columns.
     int square_of_pixels() const {
         constexpr int k_max_columns = 1024, k_fewest_columns = 256;
         for (int side = 1; pixels_.width() / side >= k_fewest_columns; ++side)
@@ -495,8 +496,8 @@ std::shared_ptr<const Sky::Distribution> make_distribution(const SkyDesc& desc,
     return std::make_shared<GreySky>(0, bands_nm.size());
 }
 
-// W/m^2 per band that the description asks for; none: those of a model in its own units, to be
-// scaled as a whole if there are lux.
+// The irradiance per band that the description asks for [W/m^2]; none: the model has its own units,
+// and is scaled as a whole if lux are given.
 std::optional<PerBand> wanted_irradiance(const SkyDesc& desc, std::span<const double> bands_nm) {
     if (desc.model == SkyDesc::Model::black) return PerBand(bands_nm.size(), 0.0);
     if (desc.irradiance && !desc.spectrum) return desc.irradiance;
@@ -620,7 +621,7 @@ class SkyDivision {
     }
 
   private:
-    std::pair<SkyPart, SkyPart> halved(const SkyPart& part, double share) const {
+    std::pair<SkyPart, SkyPart> halved(const SkyPart& part, double fraction) const {
         const double inner = edges_[part.row], outer = edges_[part.row_end];
         const double along = 0.5 * (inner + outer) * column_width_ *
                              static_cast<double>(part.column_end - part.column);
@@ -630,8 +631,8 @@ class SkyDivision {
         std::size_t& end = is_wide ? first.column_end : first.row_end;
         const std::size_t begin = is_wide ? part.column : part.row;
         const std::size_t last = end;
-        const double wanted = share * weights_.of(part);
-        // The place at which the first has the share that is nearest to what it is to have.
+        const double wanted = fraction * weights_.of(part);
+        // The boundary at which the weight of the first half is nearest to the one wanted.
         std::size_t best = begin + 1;
         double least = -1;
         for (std::size_t place = begin + 1; place < last; ++place) {
@@ -657,7 +658,7 @@ class SkyDivision {
 std::vector<SkyDirection> Sky::directions(int count, double water_index) const {
     const Quadrature& q = *quadrature_;
     const std::size_t columns = q.column_sines.size();
-    // Per node: plane irradiance below the surface, as a share of all of it in each band, summed.
+    // The plane irradiance below the surface, by which each node is normalised in each band.
     Spectrum below;
     std::vector<double> row_transmitted;  // T cos theta dOmega
     std::vector<double> row_cosines;      // in the water
@@ -693,21 +694,22 @@ std::vector<SkyDirection> Sky::directions(int count, double water_index) const {
                 direction.solid_angle += q.rows[row].solid_angle;
                 add_scaled(irradiance.first(bands_), row_transmitted[row],
                            q.radiance_at(row, column));
-                const double share = weights[row * columns + column];
+                const double node_weight = weights[row * columns + column];
                 const Vector3 towards = q.towards(row, column);
-                weight += share;
-                scalar += share / row_cosines[row];
-                east += share * towards.x;
-                north += share * towards.y;
+                weight += node_weight;
+                scalar += node_weight / row_cosines[row];
+                east += node_weight * towards.x;
+                north += node_weight * towards.y;
             }
         if (!(weight > 0)) continue;
-        // Rounding must not carry it beyond the angles that light in water has.
+        // Clamped, since rounding must not carry it beyond the angles that light can have in water.
         const double steepest = 1, flattest = std::sqrt(1 - 1 / (water_index * water_index));
         const double in_water = std::clamp(weight / scalar, flattest, steepest);
         const double sine =
             std::min(1.0, water_index * std::sqrt(std::max(0.0, 1 - in_water * in_water)));
         const double level = std::hypot(east, north);
-        // Light from all around has no side: one direction stands for it from above.
+        // Light that is symmetric about the zenith has no azimuth: a direction from above
+        // represents it.
         const bool has_side = level > 1e-9 * weight;
         direction.towards = has_side ? Vector3{sine * east / level, sine * north / level,
                                                std::sqrt(std::max(0.0, 1 - sine * sine))}

@@ -23,13 +23,13 @@ SampledCurve daylight_spectrum(double x, double y);
 Matrix3 world_from_sky(const Vector3& up, const std::optional<Vector3>& north,
                        const SourceLocation& where);
 
-/// One of the directions that stand for a sky.
+/// One of the directions that represent a sky.
 struct SkyDirection {
     Vector3 towards;         ///< the sky, in the air, sky space, unit
-    double solid_angle = 0;  ///< of the part of the sky that it stands for [sr]
+    double solid_angle = 0;  ///< of the part of the sky that it represents [sr]
     Spectrum radiance;       ///< [W m^-2 sr^-1]
 
-    /// On a plane that faces it, in the air [W/m^2].
+    /// Its irradiance on a plane that faces it, in the air [W/m^2].
     Spectrum normal_irradiance() const { return solid_angle * radiance; }
 };
 
@@ -74,7 +74,7 @@ class Sky {
     Spectrum irradiance() const;
 
     /// Divides the sky into `count` parts, 1 to 1024, of about equal irradiance below flat water,
-    /// each with a direction that stands for it; none for a sky without light, and fewer where the
+    /// each with a direction that represents it; none for a sky without light, and fewer where the
     /// light comes from fewer parts than that. They are the same in every call, and cover 2 pi sr
     /// where no part of the sky is dark.
     ///
@@ -83,8 +83,9 @@ class Sky {
     /// Fresnel's transmittance T for unpolarised light, give the sky's own plane irradiance below
     /// it
     ///     E = int L T cos theta dOmega
-    /// exactly, in each band, and so do the parts each by itself. It stands where the scalar
-    /// irradiance of its part, summed over bands each as a share of its total, is exact, too:
+    /// exactly, in each band, and each part gives its own. Its direction is chosen so that the
+    /// scalar irradiance of its part, normalised by the total in each band and summed, is exact,
+    /// too:
     ///     E_0 = int L T cos theta / cos theta_w dOmega, sin theta_w = sin theta / n.
     /// An index of 1 gives both in the air.
     std::vector<SkyDirection> directions(int count, double water_index) const;
@@ -101,8 +102,9 @@ class Sky {
     Spectrum scale_;
 };
 
-/// Fresnel's transmittance for unpolarised light from the air into water of index `n`, as a share
-/// of energy, by the cosine of the angle of incidence, 0..1; 0 at grazing incidence unless n is 1.
+/// Fresnel's transmittance for unpolarised light from the air into water of index `n`, the fraction
+/// of energy that enters, by the cosine of the angle of incidence, 0..1; 0 at grazing incidence
+/// unless n is 1.
 double transmittance_into_water(double cosine, double n);
 
 }  // namespace uw

@@ -15,16 +15,16 @@ namespace uw {
 
 namespace {
 
-// Optical depths beyond the farthest lamp, both on the way from the lamp and on the way to the
-// camera: e^-10 = 5e-5 of the light is left. A sun's light may come straight down on the way: twice
-// that to the camera.
-constexpr double k_reach_optical_depth = 5;
+// The optical depth that is kept beyond the farthest lamp, both from the lamp and to the camera:
+// e^-10 = 5e-5 of the light remains. A sun's light may come straight down, so that only the path to
+// the camera counts, with twice that.
+constexpr double k_max_optical_depth = 5;
 // Maximum number of survey rays along each side of the image, edges included.
 constexpr int k_survey_rays = 256;
 // Upper bound on the number of slabs including those behind `far`, whatever their thickness.
 constexpr double k_max_slabs = 1 << 20;
 
-// The extent of the water seen by a coarse lattice of rays, in camera z [m].
+// The extent of the water along a coarse lattice of camera rays, in camera z [m].
 struct View {
     double near = k_far;  // where it begins
     double deepest = 0;   // of the surfaces
@@ -39,9 +39,9 @@ View survey(const RaySource& rays, const Surfaces& surfaces) {
         View view;
         bool all_enter = true, any_enters = false;
     };
-    std::vector<Row> seen(static_cast<std::size_t>(rows) + 1);
-    parallel_for(seen.size(), [&](std::size_t j) {
-        Row& row = seen[j];
+    std::vector<Row> surveyed(static_cast<std::size_t>(rows) + 1);
+    parallel_for(surveyed.size(), [&](std::size_t j) {
+        Row& row = surveyed[j];
         for (int i = 0; i <= columns; ++i) {
             const auto ray = rays.refracted_ray(static_cast<double>(i) * rays.width() / columns,
                                                 static_cast<double>(j) * rays.height() / rows);
@@ -59,7 +59,7 @@ View survey(const RaySource& rays, const Surfaces& surfaces) {
     });
     View view;
     bool all_enter = true, any_enters = false;
-    for (const Row& row : seen) {
+    for (const Row& row : surveyed) {
         view.near = std::min(view.near, row.view.near);
         view.deepest = std::max(view.deepest, row.view.deepest);
         view.open = view.open || row.view.open;
@@ -74,15 +74,15 @@ View survey(const RaySource& rays, const Surfaces& surfaces) {
 }
 
 // Camera z beyond which no significant lamp light returns.
-double reach(const RaySource& rays, const LitScene& scene, double near) {
+double max_depth(const RaySource& rays, const LitScene& scene, double near) {
     const AttenuationTable attenuation(*scene.medium);
     const double min_c =
         attenuation.uniform.least(static_cast<std::size_t>(attenuation.band_count));
     if (min_c <= 0) return k_far;
     const Point3 camera = rays.world_from_camera() * Point3{};
-    double farthest = k_reach_optical_depth / min_c;
+    double farthest = k_max_optical_depth / min_c;
     for (const Lamp& lamp : *scene.emitters) {
-        const double depth = (lamp.sunlight() ? 2 : 1) * k_reach_optical_depth;
+        const double depth = (lamp.sunlight() ? 2 : 1) * k_max_optical_depth;
         farthest = std::max(farthest, distance(lamp.origin(camera), camera) + depth / min_c);
     }
     return std::min(k_far, near + farthest);
@@ -92,17 +92,17 @@ double reach(const RaySource& rays, const LitScene& scene, double near) {
 
 Slabs place_slabs(const PlanesDesc& desc, const RaySource& rays, const LitScene& scene) {
     const View view = survey(rays, *scene.surfaces);
-    const double last = reach(rays, scene, view.near);
-    const double seen = view.open ? last : std::min(last, view.deepest);
+    const double last = max_depth(rays, scene, view.near);
+    const double visible = view.open ? last : std::min(last, view.deepest);
     Slabs slabs;
     slabs.near = desc.near.value_or(view.near);
-    slabs.far = desc.far.value_or(seen);
+    slabs.far = desc.far.value_or(visible);
     slabs.count = desc.count;
-    if (slabs.far <= view.near || slabs.near >= seen)
+    if (slabs.far <= view.near || slabs.near >= visible)
         throw InputError(fmt::format(
             "{}: the slabs from z = {:.6g} m to {:.6g} m contain no visible water: it lies from "
             "{:.6g} m to {:.6g} m; choose near and far to enclose it, or omit them",
-            desc.where, slabs.near, slabs.far, view.near, seen));
+            desc.where, slabs.near, slabs.far, view.near, visible));
     if (!desc.far) {
         const double count = std::ceil((last - slabs.near) / slabs.thickness());
         const double thickness = slabs.thickness();

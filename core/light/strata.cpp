@@ -33,16 +33,17 @@ void Strata::add_column(const Point3& a, const Point3& b, std::span<double> colu
     }
 }
 
-// Interval by interval, in each of which the mean of the values at both ends is that of all between
-// them: no difference of large integrals loses digits, however level the way is.
+// Sums over the table's intervals, in each of which concentrations are linear, so that the mean of
+// the values at both ends is exact: no difference of large integrals loses digits, however level
+// the path is.
 void Strata::add_straight_column(const Point3& a, const Point3& b, std::span<double> column) const {
     const double from = std::min(depth(a), depth(b)), to = std::max(depth(a), depth(b));
     const double length = distance(a, b);
     const auto add = [&](double first, double last, std::size_t i) {
-        const double share = to > from ? (last - first) / (to - from) : 1;
+        const double fraction = to > from ? (last - first) / (to - from) : 1;
         for (const Curve& curve : curves_)
             column[curve.constituent] +=
-                0.5 * share * length * (value(curve, first, i) + value(curve, last, i));
+                0.5 * fraction * length * (value(curve, first, i) + value(curve, last, i));
     };
     std::size_t i = interval(from);
     double first = from;

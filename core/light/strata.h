@@ -11,9 +11,9 @@
 
 namespace uw {
 
-/// Concentrations that depend on the depth below a plane alone: linear between the depths of a
-/// table, and held above and below it. Their columns have a closed form everywhere. Above a plane
-/// that is a mirror there is the image of what lies below (core/light/submerged.h).
+/// Concentrations that depend only on the depth below a plane: linear between the depths of a
+/// table, and constant above and below it. Their columns have a closed form everywhere. Above a
+/// plane that is a mirror lies the image of what is below (core/light/submerged.h).
 class Strata {
   public:
     /// Concentrations of one of the medium's constituents, >= 0 [in its unit], one per depth.
@@ -34,7 +34,7 @@ class Strata {
 
     const std::vector<double>& depths() const { return depths_; }
     const std::vector<Curve>& curves() const { return curves_; }
-    /// How far below the plane `x` lies [m], or its image if that is a mirror.
+    /// The depth of `x` below the plane [m], or that of its image if the plane is a mirror.
     double depth(const Point3& x) const {
         const double below = -glm::dot(x - surface_, up_);
         return is_mirror_ ? std::abs(below) : below;

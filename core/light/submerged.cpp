@@ -10,8 +10,8 @@ namespace uw {
 
 namespace {
 
-// Points that lie above the surface by less than rounding, relative to their line's length, lie in
-// it: light of the sky begins there.
+// Points above the surface by less than rounding, relative to their line's length, count as lying
+// in it, as the light of the sky begins there.
 constexpr double k_rounding = 1e-9;
 
 bool is_above(const WaterSurface& surface, const Point3& x, const Point3& other) {
@@ -31,8 +31,8 @@ SubmergedSurfaces::SubmergedSurfaces(std::shared_ptr<const Surfaces> below,
     names_.objects.push_back({"water surface", {}});
 }
 
-// `u` and `v` of the hit are where its light comes from in the air, in the plane of calm water:
-// what Surfaces::material needs.
+// Stores in `u` and `v` of the hit the direction from which its light comes in the air, in the
+// plane of calm water, which Surfaces::material needs.
 bool SubmergedSurfaces::meet_water_surface(const Ray& ray, double s_end, bool found,
                                            SurfaceHit& hit) const {
     const std::optional<WaterSurface::Meeting> meeting =
@@ -68,7 +68,8 @@ void SubmergedSurfaces::closest_hits(std::span<const Ray> rays, double s_end,
         found[i] = meet_water_surface(rays[i], s_end, found[i] != 0, hits[i]) ? 1 : 0;
 }
 
-// Radiance grows with the square of the index, as the light is packed into a narrower cone.
+// Radiance grows with the square of the index, as refraction compresses the light into a narrower
+// cone.
 SurfaceMaterial SubmergedSurfaces::material(const SurfaceHit& hit) const {
     if (!hit.is_water_surface) return below_->material(hit);
     SurfaceMaterial material;

@@ -18,18 +18,18 @@ namespace uw {
 /// band [W m^-2 sr^-1].
 using SkyRadiance = std::function<Spectrum(const Vector3& from)>;
 
-/// The sky as it is seen from below the water.
+/// The sky as seen from below the water.
 struct SeenSky {
     SkyRadiance radiance;  // empty: it is black
     std::size_t lamp = 0;  // the scene's lamp that is its light, by index
 };
 
-/// What lies below a water surface, and the surface seen from below, at which all rays that come
-/// from the water end (SurfaceHit::is_water_surface). It emits what it lets through of the sky;
-/// that it reflects is for those to follow who meet it.
+/// The surfaces below a water surface, and that surface viewed from below, at which all rays from
+/// the water end (SurfaceHit::is_water_surface). It emits the light of the sky that it transmits;
+/// whoever hits it has to follow the reflection.
 ///
-/// Lines that begin or end above the surface lead to the mirror image of the water (WaterSurface):
-/// they are those of light that is reflected on its way.
+/// Lines that begin or end above the surface lead through the mirror image of the water
+/// (WaterSurface): they are the paths of light that the surface reflects.
 class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
   public:
     SubmergedSurfaces(std::shared_ptr<const Surfaces> below, const WaterSurface& surface,
@@ -62,7 +62,7 @@ class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
                         TextureGradient& gradient) const override;
 
   private:
-    // Replaces what was found of the surfaces below on the way, if the water's surface is nearer.
+    // Replaces the hit that was found on the surfaces below if the water's surface is nearer.
     bool meet_water_surface(const Ray& ray, double s_end, bool found, SurfaceHit& hit) const;
 
     std::shared_ptr<const Surfaces> below_;
@@ -72,14 +72,14 @@ class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
     SurfaceNames names_;
 };
 
-/// The lamp, by its index, whose light a surface emits where it is hit: the sky, at the water's
-/// surface. None for all others, whose light is their own. Precondition: it emits.
+/// The index of the lamp whose light a surface emits where it is hit: the sky, at the water's
+/// surface; none for all other surfaces, which emit their own light. Precondition: it emits.
 std::optional<std::size_t> lamp_of_emission(const Surfaces& surfaces, const SurfaceHit& hit);
 
-/// Concentrations below a water surface, and above it those of its mirror image.
+/// Concentrations below a water surface, and their mirror image above it.
 class SubmergedField final : public ConcentrationField {
   public:
-    /// `with_image`: bounds and grids are those of both. Without, only columns lead above the
+    /// `with_image`: bounds and grids include the image. Without, only columns lead above the
     /// surface.
     SubmergedField(std::shared_ptr<const ConcentrationField> below, const WaterSurface& surface,
                    bool with_image);

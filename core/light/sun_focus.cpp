@@ -18,8 +18,8 @@ namespace {
 constexpr int k_slices = 48;
 constexpr int k_beams_of_texel = 3;  // along each side
 
-/// Where a beam enters the water, at depth 0, and what becomes of it. Single precision is 1e-7 of a
-/// shift by some metres, and half of the memory that each depth's sum reads.
+/// A beam of light where it enters the water, at depth 0. Single precision is an error of 1e-7 of a
+/// shift by some metres, and halves the memory that the sum at each depth reads.
 struct Beam {
     float u = 0, v = 0;              // of its place at depth 0, less the grid's [texels]
     float slope_u = 0, slope_v = 0;  // per metre of depth, less the mean ones [texels/m]
@@ -34,13 +34,13 @@ double whole_below(double x) {
 
 /// Light that enters the water through a slope of its surface.
 struct Entry {
-    Vector3 down;  // in which it goes on, in the surface's coordinates, unit
+    Vector3 down;  // direction of travel below, in the surface's coordinates, unit
     double flux =
         0;  // through a level area, relative to the irradiance across the light in the air
 };
 
-/// None where the slope lies in the waves' own shadow. `in_air`: of the light, in the surface's
-/// coordinates; `normal`: out of the water.
+/// Refracts light at a slope; none where the slope faces away from the light. `in_air`: direction
+/// of the light, in the surface's coordinates; `normal`: out of the water.
 std::optional<Entry> enter(const WaterSurface& surface, const Vector3& in_air,
                            const Vector3& normal) {
     const double towards = -glm::dot(in_air, normal);
@@ -50,21 +50,22 @@ std::optional<Entry> enter(const WaterSurface& surface, const Vector3& in_air,
     return Entry{*down, towards / normal.z * (1 - surface.reflectance_from_air(towards))};
 }
 
-/// The mean by flux of the directions in which light goes on, unit: over slopes that are normally
-/// distributed with the waves' variances (Cox and Munk 1954), so that it is the same at all moments
-/// of a sea, and what is known of a sun (its shadow maps) holds while waves move.
+/// The mean direction of the refracted light, weighted by flux, unit: over slopes that are normally
+/// distributed with the waves' variances (Cox and Munk 1954), so that it is the same at all times,
+/// and a sun's shadow maps stay valid while waves move.
 Vector3 mean_direction(const WaterSurface& surface, const Vector3& in_air) {
-    constexpr int k_steps = 24;  // to each side; the integrand is smooth but where shadow begins
-    constexpr double k_reach = 4.5;  // standard deviations
+    constexpr int k_steps =
+        24;  // to each side; the integrand is smooth except at the shadow's edge
+    constexpr double k_extent = 4.5;  // standard deviations
     const SlopeVariance slopes = surface.waves()->statistics().slopes;
-    // The factor of the covariance matrix that is lower triangular.
+    // The Cholesky factor of the covariance matrix.
     const double u_by_x = std::sqrt(slopes.along);
     const double v_by_x = u_by_x > 0 ? slopes.covariance / u_by_x : 0;
     const double v_by_y = std::sqrt(std::max(0.0, slopes.across - v_by_x * v_by_x));
     Vector3 sum{0};
     for (int j = -k_steps; j <= k_steps; ++j)
         for (int i = -k_steps; i <= k_steps; ++i) {
-            const double x = k_reach * i / k_steps, y = k_reach * j / k_steps;
+            const double x = k_extent * i / k_steps, y = k_extent * j / k_steps;
             const WavePoint point{0, u_by_x * x, v_by_x * x + v_by_y * y};
             if (const std::optional<Entry> entry = enter(surface, in_air, point.normal()))
                 sum += std::exp(-0.5 * (x * x + y * y)) * entry->flux * entry->down;
@@ -78,9 +79,9 @@ int wrapped(int i, int count) {
     return (i % count + count) % count;
 }
 
-/// How the flux at a place is shared out among the three texels around: a quadratic B-spline. Even
-/// beams light texels evenly, and as they move apart or together, evenly more or less; with kinks,
-/// as a linear share has them, some texels would see a sixth more of any change.
+/// The weights with which flux is splatted onto the three texels around: a quadratic B-spline. A
+/// uniform grid of beams lights all texels equally, also after beams have diverged or converged;
+/// with the kinks of linear weights, some texels would receive a sixth more of any change.
 struct SplineWeights {
     /// `x`: in texels from the centre of the first, of `count`. Those beyond have no weight unless
     /// the map repeats.
@@ -170,11 +171,11 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
     });
 }
 
-// Evenly over a square whose variance is that of a disc of this radius [texels].
+// A box filter whose variance is that of a disc of this radius [texels].
 void SunFocus::blur(Grid2D<float>& slice, double radius) const {
     const double half = 0.5 * std::sqrt(3.0) * radius;
     if (half < 0.5) return;
-    // Whole texels on each side, and a part of those beyond.
+    // Whole texels on each side, and a fraction of the next ones.
     const int whole = static_cast<int>(half - 0.5);
     const double part = half - 0.5 - whole;
     std::vector<double> line(static_cast<std::size_t>(resolution_));
@@ -197,8 +198,8 @@ void SunFocus::blur(Grid2D<float>& slice, double radius) const {
 }
 
 double SunFocus::depth_of(std::size_t slice) const {
-    const double share = static_cast<double>(slice) / k_slices;
-    return extent_.depth * share * share;
+    const double fraction = static_cast<double>(slice) / k_slices;
+    return extent_.depth * fraction * fraction;
 }
 
 double SunFocus::slide(const Vector3& direction) const {
@@ -223,7 +224,7 @@ void SunFocus::apply(const Ray& ray, std::span<const double> s, std::span<double
                              from.depth + s[i] * per_metre.depth});
 }
 
-// Linear between the texels around, and between the depths above and below.
+// Interpolates linearly between the texels around, and between the depths above and below.
 double SunFocus::factor(const Place& place) const {
     if (!(place.depth > 0)) return 1;
     double u = place.u - first_u_, v = place.v - first_v_;
@@ -234,9 +235,9 @@ double SunFocus::factor(const Place& place) const {
         return 1;
     }
     // The texels whose centres lie below and above.
-    const auto neighbours = [&](double at, double& share) {
+    const auto neighbours = [&](double at, double& fraction) {
         int first = static_cast<int>(whole_below(at));
-        share = at - first;
+        fraction = at - first;
         int second = first + 1;
         if (first < 0) first = extent_.is_periodic ? resolution_ - 1 : 0;
         if (first >= resolution_) first = extent_.is_periodic ? 0 : resolution_ - 1;  // by rounding
@@ -248,7 +249,7 @@ double SunFocus::factor(const Place& place) const {
     // Slices lie at the squares of whole numbers (depth_of), and k^2 and (k + 1)^2 around this one.
     const double square = k_slices * k_slices * std::min(1.0, place.depth / extent_.depth);
     const int k = std::min(static_cast<int>(std::sqrt(square)), k_slices - 1);
-    const auto share = static_cast<float>((square - k * k) / (2 * k + 1));
+    const auto w = static_cast<float>((square - k * k) / (2 * k + 1));
     const auto s = static_cast<float>(across), t = static_cast<float>(down);
     const auto value = [&](const Grid2D<float>& slice) {
         const auto along = [&](std::size_t row) {
@@ -257,8 +258,8 @@ double SunFocus::factor(const Place& place) const {
         };
         return (1 - t) * along(rows[0]) + t * along(rows[1]);
     };
-    return static_cast<double>((1 - share) * value(slices_[static_cast<std::size_t>(k)]) +
-                               share * value(slices_[static_cast<std::size_t>(k) + 1]));
+    return static_cast<double>((1 - w) * value(slices_[static_cast<std::size_t>(k)]) +
+                               w * value(slices_[static_cast<std::size_t>(k) + 1]));
 }
 
 }  // namespace uw

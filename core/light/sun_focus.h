@@ -10,23 +10,23 @@
 
 namespace uw {
 
-/// How waves focus the light of a sun in the water below them: caustics. A factor on its plane
-/// irradiance below calm water, whose mean over a level plane is the share that waves let through,
+/// Caustics: how waves focus the light of a sun in the water below them, as a factor on its plane
+/// irradiance below calm water. Its mean over a level plane is the transmittance of the waves
 /// relative to that of calm water.
 ///
-/// A regular grid of beams meets the waves, nine for each texel, and is refracted by them. Where
-/// each crosses a level plane its flux is shared out among the nine texels around, and so at a
-/// series of depths, which lie closer near the surface. Between depths the factor is linear along
-/// light's mean direction. What beams differ from it, by a few degrees, moves light to where it
-/// goes, but counts neither for scattering angles nor for lengths.
+/// The waves refract a regular grid of beams, nine for each texel. Where a beam crosses a level
+/// plane, its flux is splatted onto the nine texels around; this is done at a series of depths,
+/// which lie closer together near the surface. Between depths the factor is linear along the
+/// light's mean direction. The deviation of beams from that direction, by a few degrees, determines
+/// where their light arrives, but is ignored for scattering angles and path lengths.
 class SunFocus {
   public:
-    /// What of the water the map holds.
+    /// The part of the water that the map covers.
     struct Extent {
         double side = 0;           ///< of a level square [m], > 0
         bool is_periodic = false;  ///< the square repeats; else there is no focusing outside
         double u = 0, v = 0;       ///< its centre, in the surface's coordinates
-        double depth = 0;          ///< down to here [m], > 0; the same below
+        double depth = 0;          ///< down to which the factor varies [m], > 0; constant below
 
         friend bool operator==(const Extent&, const Extent&) = default;
     };
@@ -36,9 +36,9 @@ class SunFocus {
     SunFocus(const WaterSurface& surface, const Vector3& direction, double angle,
              const Extent& extent, int resolution);
 
-    /// In which light travels in the water in the mean, world, unit: flatter than below calm water
-    /// where the sun is low, since slopes that face it catch more and turn it less. By the waves'
-    /// statistics: the same at any time.
+    /// The mean direction of travel of the light in the water, world, unit: flatter than below calm
+    /// water if the sun is low, since slopes that face it receive more light and refract it less.
+    /// It follows from the waves' statistics and is the same at any time.
     const Vector3& direction() const { return direction_; }
     /// The factor at a point in the world, >= 0; 1 above the water.
     double at(const Point3& x) const;
@@ -46,12 +46,12 @@ class SunFocus {
     void apply(const Ray& ray, std::span<const double> s, std::span<double> values) const;
     /// Side of a texel [m].
     double texel() const { return extent_.side / resolution_; }
-    /// By how many metres the place in the map changes per metre along a unit vector, level.
+    /// How far a point moves across the map [m] per metre along a unit vector.
     double slide(const Vector3& direction) const;
 
   private:
-    /// Where light of the beams' direction enters [texels, from the surface's origin], and how far
-    /// below [m].
+    /// A point of the map: where light with the mean direction enters the water [texels, from the
+    /// surface's origin], and the depth below it [m].
     struct Place {
         double u = 0, v = 0, depth = 0;
     };

@@ -29,9 +29,9 @@ int pixel(double position) {
 
 namespace {
 
-// The steps of the additive sequence that fills the unit square most evenly (Roberts 2018, "The
-// unreasonable effectiveness of quasirandom sequences"): the powers of 1/1.3247..., which is the
-// root of x^3 = x + 1. The third coordinate's is independent of them: the golden ratio.
+// The steps of Roberts's R2 sequence, which fills the unit square most evenly (Roberts 2018, "The
+// unreasonable effectiveness of quasirandom sequences"): powers of 1/1.3247..., the inverse of the
+// root of x^3 = x + 1. The step of the third coordinate, the golden ratio, is independent of them.
 constexpr UnitPoint k_even_steps{0.7548776662466927, 0.5698402909980532, 0.6180339887498949};
 
 double fraction(double x) {
@@ -40,8 +40,8 @@ double fraction(double x) {
 
 }  // namespace
 
-// The samples of a pixel lie in it as evenly as points in a square can; in each pixel, and for each
-// number, this pattern is shifted otherwise.
+// The positions of a pixel's samples are stratified, and so are the points derived from them; the
+// pattern has another random shift (Cranley-Patterson rotation) for each pixel and each number.
 Point3 shadow_origin(const Lamp& emitter, const SurfaceSample& sample, std::size_t number) {
     if (!emitter.is_part()) return emitter.origin(sample.hit.position);
     const auto pixel_bits = [](double position) {
@@ -216,7 +216,8 @@ void SurfaceColumns::column(std::size_t sample, std::span<double> column) {
 
 namespace {
 
-// A tile of thousands of samples per pixel has a million shadow rays to each lamp.
+// Shadow rays are traced in batches, as a tile of thousands of samples per pixel has a million of
+// them to each lamp.
 constexpr std::size_t k_rays_at_once = 1024;
 
 /// The samples that one emitter may illuminate: they face it and lie within its beam.
@@ -226,7 +227,7 @@ struct Facing {
     std::vector<double> radii, geometry_terms;
     std::vector<char> hidden;
 
-    /// Of all samples, or of those that `wanted` has unless it is empty.
+    /// Finds them among all samples, or among those marked in `wanted` unless it is empty.
     void find(const Lamp& lamp, std::span<const SurfaceSample* const> all,
               std::span<const char> wanted = {}) {
         samples.clear();
@@ -268,7 +269,7 @@ struct Facing {
         }
     }
 
-    /// Traces the rays with this number (shadow_origin). `all`: as in find.
+    /// Traces the rays with this number (shadow_origin). `all`: as for find().
     void trace_shadows(const Lamp& part, std::span<const SurfaceSample* const> all,
                        std::size_t number, const Surfaces& surfaces) {
         thread_local std::vector<Point3> origins;
@@ -284,24 +285,24 @@ struct Facing {
     }
 };
 
-/// find_half_shades for one lamp after the other.
+/// Implements find_half_shades, one lamp at a time.
 class HalfShades {
   public:
     HalfShades(const LitScene& scene, std::span<const SurfaceSample* const> samples,
-               std::span<double> shares)
-        : scene_(scene), samples_(samples), shares_(shares) {}
+               std::span<double> visibilities)
+        : scene_(scene), samples_(samples), visibilities_(visibilities) {}
 
-    /// Those of the emitters from `first` up to `last`.
+    /// Finds the visibility of the emitters from `first` up to `last`, which form one lamp.
     void find(std::size_t first, std::size_t last) {
         thread_local std::vector<char> lit, dark;
         lit.assign(samples_.size(), 0);
         dark.assign(samples_.size(), 0);
-        trace(first, last, 0, {}, [&](std::size_t sample, double& share, bool is_hidden) {
+        trace(first, last, 0, {}, [&](std::size_t sample, double& visibility, bool is_hidden) {
             (is_hidden ? dark : lit)[sample] = 1;
-            share = is_hidden ? 0 : 1;
+            visibility = is_hidden ? 0 : 1;
         });
-        // A pixel is in half-shade if any of its samples is: where the first rays decide by
-        // themselves whether there are more, the mean is off.
+        // All samples of a pixel are treated alike: if the first ray of a sample decided whether
+        // that sample gets more, the mean would be biased.
         for (std::size_t begin = 0, end = 0; begin < samples_.size(); begin = end) {
             const auto is_of_pixel = [&](std::size_t i) {
                 return pixel(samples_[i]->x) == pixel(samples_[begin]->x) &&
@@ -317,8 +318,8 @@ class HalfShades {
         }
         if (std::ranges::count(lit, 1) == 0) return;
         for (int round = 1; round < k_half_shade_rays; ++round)
-            trace(first, last, round, lit, [&](std::size_t, double& share, bool is_hidden) {
-                share += ((is_hidden ? 0 : 1) - share) / (round + 1);
+            trace(first, last, round, lit, [&](std::size_t, double& visibility, bool is_hidden) {
+                visibility += ((is_hidden ? 0 : 1) - visibility) / (round + 1);
             });
     }
 
@@ -330,28 +331,29 @@ class HalfShades {
         const std::vector<Lamp>& emitters = *scene_.emitters;
         for (std::size_t j = first; j < last; ++j) {
             facing.find(emitters[j], samples_, wanted);
-            // By the lamp alone: a lamp's light is the same whatever others there are.
+            // Numbers are counted within the lamp, so that its light does not depend on other
+            // lamps.
             facing.trace_shadows(emitters[j], samples_,
                                  j - first + static_cast<std::size_t>(round) * (last - first),
                                  *scene_.surfaces);
             for (std::size_t n = 0; n < facing.samples.size(); ++n) {
                 const std::size_t i = facing.samples[n];
-                take(i, shares_[i * emitters.size() + j], facing.hidden[n] != 0);
+                take(i, visibilities_[i * emitters.size() + j], facing.hidden[n] != 0);
             }
         }
     }
 
     const LitScene& scene_;
     std::span<const SurfaceSample* const> samples_;
-    std::span<double> shares_;
+    std::span<double> visibilities_;
 };
 
 }  // namespace
 
 void find_half_shades(const LitScene& scene, std::span<const SurfaceSample* const> samples,
-                      std::span<double> shares) {
+                      std::span<double> visibilities) {
     const std::vector<Lamp>& emitters = *scene.emitters;
-    HalfShades half_shades(scene, samples, shares);
+    HalfShades half_shades(scene, samples, visibilities);
     for (std::size_t first = 0, last = 0; first < emitters.size(); first = last) {
         while (last < emitters.size() && emitters[last].index() == emitters[first].index()) ++last;
         if (emitters[first].is_part()) half_shades.find(first, last);
@@ -385,7 +387,7 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     columns.take_camera();
     for (std::size_t i = 0; i < samples.size(); ++i)
         set_depths(i, samples[i]->hit.distance, light.to_camera(i));
-    find_half_shades(scene_, samples, light.visible_shares());
+    find_half_shades(scene_, samples, light.visibilities());
     for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
         const Lamp& lamp = (*scene_.emitters)[j];
         facing.find(lamp, samples);
@@ -393,10 +395,10 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
         columns.take_emitter(j);
         for (std::size_t n = 0; n < facing.samples.size(); ++n) {
             const std::size_t i = facing.samples[n];
-            double& share = light.visible_share(i, j);
-            if (!lamp.is_part()) share = facing.hidden[n] != 0 ? 0 : 1;
-            if (share == 0) continue;
-            light.geometry_term(i, j) = share * facing.geometry_terms[n];
+            double& visibility = light.visibility(i, j);
+            if (!lamp.is_part()) visibility = facing.hidden[n] != 0 ? 0 : 1;
+            if (visibility == 0) continue;
+            light.geometry_term(i, j) = visibility * facing.geometry_terms[n];
             set_depths(i, facing.radii[n], light.from_emitter(i, j));
         }
     }

@@ -14,7 +14,7 @@
 
 namespace uw {
 
-/// How many shadow rays a surface sample in half-shade has to each part of the lamp.
+/// Shadow rays from a surface sample in a penumbra to each part of the lamp.
 inline constexpr int k_half_shade_rays = 4;
 
 /// Light of every emitter (LitScene::emitters) on surface points, and the transmittance of the
@@ -27,7 +27,7 @@ class SurfaceLight {
         bands_ = bands;
         geometry_terms_.assign(samples * emitters.size(), 0.0);
         transmittances_.assign(samples * (1 + emitters.size()) * bands, 0.0);
-        visible_shares_.assign(samples * emitters.size(), 0.0);
+        visibilities_.assign(samples * emitters.size(), 0.0);
     }
 
     const std::vector<Lamp>& emitters() const { return *emitters_; }
@@ -36,9 +36,10 @@ class SurfaceLight {
     bool visible(std::size_t sample, std::size_t emitter) const {
         return geometry_term(sample, emitter) > 0;
     }
-    /// The share of it that does: 0 or 1, or between them for a part of a lamp (find_half_shades).
-    double visible_share(std::size_t sample, std::size_t emitter) const {
-        return visible_shares_[sample * emitter_count() + emitter];
+    /// The fraction of the emitter that is visible from the sample: 0 or 1, or between them for a
+    /// part of a lamp (find_half_shades).
+    double visibility(std::size_t sample, std::size_t emitter) const {
+        return visibilities_[sample * emitter_count() + emitter];
     }
     /// Irradiance in the absence of water [W/m^2].
     double clean(std::size_t sample, std::size_t emitter, std::size_t band) const {
@@ -54,7 +55,7 @@ class SurfaceLight {
     // For SurfaceLighting, which fills in the values:
 
     /// Irradiance without water for 1 W/sr on the emitter's axis [1/m^2]: relative intensity times
-    /// cosine over squared distance, times the visible share; 0 where it is occluded or behind the
+    /// cosine over squared distance, times the visibility; 0 where it is occluded or behind the
     /// surface.
     double& geometry_term(std::size_t sample, std::size_t emitter) {
         return geometry_terms_[sample * emitter_count() + emitter];
@@ -70,10 +71,10 @@ class SurfaceLight {
     std::span<const double> from_emitter(std::size_t sample, std::size_t emitter) const {
         return row(sample, 1 + emitter);
     }
-    /// Every visible_share: [sample * emitter_count() + emitter].
-    std::span<double> visible_shares() { return visible_shares_; }
-    double& visible_share(std::size_t sample, std::size_t emitter) {
-        return visible_shares_[sample * emitter_count() + emitter];
+    /// All visibilities: [sample * emitter_count() + emitter].
+    std::span<double> visibilities() { return visibilities_; }
+    double& visibility(std::size_t sample, std::size_t emitter) {
+        return visibilities_[sample * emitter_count() + emitter];
     }
     /// All transmittances, for processing in bulk.
     std::span<double> transmittances() { return transmittances_; }
@@ -92,27 +93,30 @@ class SurfaceLight {
     const std::vector<Lamp>* emitters_ = nullptr;
     std::size_t bands_ = 0;
     std::vector<double> geometry_terms_;  // [sample][emitter]
-    std::vector<double> visible_shares_;  // likewise
+    std::vector<double> visibilities_;    // likewise
     std::vector<double> transmittances_;  // [sample][to the camera, then from each emitter][band]
 };
 
-/// Where a shadow ray from a surface sample towards an emitter begins: there, or, if it stands for
-/// a part of a lamp, at a point of that part, another one for each `number` and each sample. The
-/// samples of a pixel cover the part evenly, so that half-shades have no steps, and little noise.
+/// The origin of the shadow ray from an emitter to a surface sample: the emitter's position or, if
+/// it represents a part of a lamp, a point of that part, another one for each `number` and each
+/// sample. The samples of a pixel stratify the part, so that penumbrae have no steps and little
+/// noise.
 Point3 shadow_origin(const Lamp& emitter, const SurfaceSample& sample, std::size_t number);
 
-/// Finds what share each sample sees of the emitters that stand for parts of lamps, [sample *
-/// emitters + emitter]; leaves the others' as they are. One shadow ray decides, but for the samples
-/// of a pixel in which they disagree about a lamp: there it is k_half_shade_rays to each part.
+/// Finds the visibility of those emitters that represent parts of lamps from each sample, [sample *
+/// emitters + emitter]; leaves that of the others as it is. One shadow ray decides, except in
+/// pixels whose samples disagree about a lamp (a penumbra): there k_half_shade_rays are traced to
+/// each part.
 void find_half_shades(const LitScene& scene, std::span<const SurfaceSample* const> samples,
-                      std::span<double> shares);
+                      std::span<double> visibilities);
 
-/// BRDF per band [1/sr] of what `sample` shows, for the light of an emitter: the highlights of
-/// those that stand for parts of a lamp join to that of the lamp.
+/// Evaluates the BRDF per band [1/sr] at `sample` for the light of an emitter. For emitters that
+/// represent parts of a lamp it is widened by their patch, so that their highlights join to that of
+/// the lamp.
 void brdf_for(const Lamp& emitter, const SurfaceReflection& reflection, const SurfaceSample& sample,
               Spectrum& values);
 
-/// How columns of neighbouring surface samples are interpolated rather than integrated one by one.
+/// How columns of neighbouring surface samples are interpolated instead of integrated one by one.
 struct ColumnMixing {
     const std::vector<std::shared_ptr<const DeepShadow>>* deep_shadows = nullptr;  // by emitter
     /// Largest permitted error in a path's transmittance (0..1), measured between the interpolated
@@ -156,7 +160,7 @@ class SurfaceColumns {
 
     void place_nodes();
     void take(int path);
-    // Where the light of the path's emitter that reaches `x` comes from.
+    // The origin of the light of the path's emitter that reaches `x`.
     Point3 origin_of(const Point3& x) const;
     void integrate(std::size_t sample, std::span<double> column) const;
     const double* node_column(std::size_t node);
@@ -199,10 +203,10 @@ class SurfaceLighting {
     }
 };
 
-/// One exact shadow ray for each emitter that a surface faces, more in half-shades
-/// (find_half_shades). Columns are exact too, or interpolated between neighbours (SurfaceColumns).
-/// The deep shadow maps' columns alone would not suffice: each surface point depends on a single
-/// column, so its interpolation error would be visible.
+/// Direct light at surfaces: traces one exact shadow ray to each emitter that a surface faces, more
+/// in penumbrae (find_half_shades). Columns are exact, too, or interpolated between neighbours
+/// (SurfaceColumns). The deep shadow maps' columns alone would not suffice: each surface point
+/// depends on a single column, so that its interpolation error would be visible.
 class DirectLighting final : public SurfaceLighting {
   public:
     /// With exact columns.

@@ -115,7 +115,7 @@ constexpr double k_draft_depth_tolerance = 0.02;
 constexpr VolumeIntegrator::Fineness k_fineness;
 constexpr VolumeIntegrator::Fineness k_draft_fineness{.knots_per_panel = 6,
                                                       .interpolated_half_tangent = 0};
-// A measured profile (IES) bends where its angles were taken, anywhere on a panel.
+// A measured profile (IES) has kinks at its angles, which may lie anywhere on a panel.
 constexpr VolumeIntegrator::Fineness k_exact_fineness{
     .min_relative_panel = 0.1, .pieces = 2, .interpolated_half_tangent = 1.5};
 constexpr double k_column_tolerance = 5e-4;
@@ -144,7 +144,7 @@ int node_count(double length, double nearest_radius, bool parallel, bool focused
 
 // One segment between two breaks, and its properties.
 struct Panel {
-    Interval stretch;
+    Interval interval;
     int pieces = 1;            // equal parts, each with its own nodes
     bool evenly = false;       // the relative intensity is 1 throughout
     std::size_t distance = 0;  // index of the first requested distance beyond it
@@ -152,9 +152,9 @@ struct Panel {
 
 void add_nodes(const Ray& ray, const Lamp& lamp, const LampPassage& passage, const Panel& panel,
                ScatterNodes& nodes) {
-    const double length = panel.stretch.length() / panel.pieces;
+    const double length = panel.interval.length() / panel.pieces;
     for (int piece = 0; piece < panel.pieces; ++piece) {
-        const double begin = panel.stretch.begin + piece * length;
+        const double begin = panel.interval.begin + piece * length;
         const double nearest = passage.radius(glm::clamp(passage.foot, begin, begin + length));
         for (const QuadratureNode& node :
              gauss_legendre(node_count(length, nearest, passage.parallel, lamp.is_focused()))) {
@@ -188,8 +188,8 @@ void add_knots(const ConcentrationProfile& profile, int knots, PanelBreaks& brea
     }
 }
 
-/// Whether parallel light gets brighter along the ray: towards the water's surface its way gets
-/// shorter by more than the ray gets longer.
+/// Whether parallel light gets brighter along the ray: towards the water's surface the light's path
+/// gets shorter by more than the ray gets longer.
 bool brightens(const LampPassage& passage) {
     return passage.slope < -1;
 }
@@ -326,10 +326,11 @@ void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double be
                                   std::span<const double> distances, Workspace& w) const {
     const Lamp& lamp = (*scene_.emitters)[emitter];
     const LampPassage passage(ray, lamp);
-    double reach = distances.back();
+    double max_distance = distances.back();
     if (min_attenuation_ > 0)
-        reach = std::min(reach, passage.reach(k_negligible_optical_depth / min_attenuation_));
-    deep_shadows_[emitter]->lit_intervals(ray, lamp.beam(ray, {begin, reach}), w.lit);
+        max_distance = std::min(
+            max_distance, passage.max_distance(k_negligible_optical_depth / min_attenuation_));
+    deep_shadows_[emitter]->lit_intervals(ray, lamp.beam(ray, {begin, max_distance}), w.lit);
     w.nodes.clear();
     for (const Interval& interval : w.lit) {
         const std::vector<double>& breaks =
@@ -344,8 +345,8 @@ void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double be
     w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
 }
 
-// Seen towards the lamp, all of its light comes the same way, so that errors of interpolation do
-// not average out along the ray.
+// On a ray towards the lamp, all of its light has nearly the same path, so that interpolation
+// errors do not average out along the ray.
 void VolumeIntegrator::refine_columns(std::size_t lamp, ScatterNodes& nodes,
                                       int constituents) const {
     const auto count = static_cast<std::size_t>(constituents);
@@ -415,7 +416,7 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         const Interval panel{breaks[i], breaks[i + 1]};
         const double middle = 0.5 * (panel.begin + panel.end);
         if (panel.length() <= 1e-12 * (1 + middle)) continue;
-        if (source.holds(passage.radius(middle))) continue;
+        if (source.contains(passage.radius(middle))) continue;
         // A panel lies between the edges of the lamp's cone: dark at the midpoint means dark
         // throughout.
         const Point3 x = ray.at(middle);

@@ -79,13 +79,13 @@ class VolumeIntegrator final : public Integrator {
         // A break that only marks a change of scale is dropped if its predecessor is closer than
         // this, relative to the distance from the lamp.
         double min_relative_panel = 0.35;
-        int pieces = 1;  // that every panel is cut into at least
+        int pieces = 1;  // the least number into which a panel is divided
         // Where tan(psi / 2) is greater, columns to the lamp are interpolated between the rays of
         // its map; up to there each is integrated.
         double interpolated_half_tangent = 0.27;
     };
 
-    /// Whose light is integrated: whether that of suns that waves focus, and whether all other.
+    /// Which light is integrated: that of suns that waves focus, all other light, or both.
     struct Part {
         bool focused = true, even = true;
     };
@@ -100,17 +100,17 @@ class VolumeIntegrator final : public Integrator {
     void in_scatter_from(const Ray& ray, double begin, std::span<const double> distances,
                          InScatter& result) const override;
 
-    /// One of the places whose light in_scatter sums up.
+    /// One of the quadrature nodes that in_scatter sums up.
     struct Node {
         std::size_t emitter;       // that lights it
         double s;                  // along the ray [m]
         std::size_t distance;      // index of the first of the distances beyond it
         const Spectrum& radiance;  // that it adds [W m^-2 sr^-1]
-        // By constituent: what its light passes on its way from the emitter to the ray's origin
-        // [unit m], and what is at the node [unit].
+        // By constituent: the column along the path of its light from the emitter to the ray's
+        // origin [unit m], and the concentration at the node [unit].
         std::span<const double> columns, concentration;
     };
-    /// The same as in_scatter node by node.
+    /// Calls `visit` with each of the nodes whose sum is in_scatter.
     void visit_nodes(const Ray& ray, std::span<const double> distances,
                      const std::function<void(const Node&)>& visit) const;
 

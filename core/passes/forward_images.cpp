@@ -19,7 +19,7 @@ void LampPaths::add_mean(double weight, const Point3& x, WaterPath& path) const 
     for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
         const Lamp& emitter = (*scene_.emitters)[j];
         if (!column.empty()) column_(j, x, column);
-        path.add(each * emitter.share(), distance(emitter.origin(x), x), column);
+        path.add(each * emitter.fraction(), distance(emitter.origin(x), x), column);
     }
 }
 

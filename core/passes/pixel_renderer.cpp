@@ -408,7 +408,7 @@ void PixelRenderer::add_surface(const SurfaceSample& surface, const SurfaceLight
         if (!light.visible(sample, j)) continue;
         const Lamp& emitter = light.emitters()[j];
         if (!emitter.is_mirrored())
-            result.lit += weight * light.visible_share(sample, j) * emitter.share() /
+            result.lit += weight * light.visibility(sample, j) * emitter.fraction() /
                           static_cast<double>(lamp_count());
         brdf_for(emitter, reflection, surface, brdf);
         // A single loop is faster than a spectrum per product: it runs for every sample and every

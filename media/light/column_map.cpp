@@ -12,16 +12,17 @@ namespace uw {
 
 namespace {
 
-// Rays are at most this many texels apart, two voxels: halfway nothing passes between them.
+// Rays are at most this many texels apart, which is two voxels, so that the rays halfway miss
+// nothing.
 constexpr int k_widest = 4;
 // Samples along a ray are at most this many of the least steps apart.
 constexpr int k_longest_steps = 16;
-// An error along a ray counts this many times as much as one across rays. Columns bend the same way
-// throughout a cloud, so that those of rays beside each other are off to the same side along all
-// that a camera sees.
+// An error along a ray counts this many times as much as one across rays: the curvature of columns
+// has the same sign throughout a cloud, so that the errors of neighbouring rays do not cancel along
+// a camera ray.
 constexpr double k_along = 5;
 
-// The first and last knot of a profile's stretch outside which there are no particles.
+// The first and last knot of the interval of a profile that contains particles.
 struct Filled {
     std::size_t first, last;
 };
@@ -41,8 +42,8 @@ void resample(const ConcentrationProfile& profile, const Filled& part, std::size
     const double begin = profile.s[part.first], end = profile.s[part.last];
     std::size_t knot = part.first;
     for (std::size_t i = 0; i <= count; ++i) {
-        const double share = static_cast<double>(i) / static_cast<double>(count);
-        const double s = begin + share * (end - begin);
+        const double fraction = static_cast<double>(i) / static_cast<double>(count);
+        const double s = begin + fraction * (end - begin);
         while (knot + 1 < part.last && profile.s[knot + 1] < s) ++knot;
         const double length = profile.s[knot + 1] - profile.s[knot];
         const double t = (s - profile.s[knot]) / length;
@@ -56,7 +57,7 @@ void resample(const ConcentrationProfile& profile, const Filled& part, std::size
     }
 }
 
-// How much an error counts at a distance from the lamp: its light falls with the square.
+// The weight of an error at a distance from the lamp, whose light falls with the square.
 double weight_at(double distance, double reference) {
     const double ratio = reference / distance;
     return ratio > 1 ? ratio * ratio : 1;
@@ -119,8 +120,8 @@ ColumnFace::ColumnFace(int width, int height, int constituents, double step, dou
     for (std::vector<float>& row : rows_) row.shrink_to_fit();
 }
 
-// Traces what is missing of the rays `apart` texels apart in the squares that need them, square by
-// square: rays beside each other read the same voxels.
+// Traces the missing ones of the rays `apart` texels apart in the squares that need them, square by
+// square, as neighbouring rays read the same voxels.
 void ColumnFace::trace(int apart, const DepthTolerance& tolerance, const March& march) {
     const auto bands = static_cast<std::size_t>((rays_.height() - 1) / k_square + 1);
     parallel_for(bands, [&](std::size_t band) {
@@ -328,7 +329,7 @@ ColumnMap::ColumnMap(const ConcentrationField& of, const Point3& lamp, double pe
 
 // Stores the texels of the rectangle, and a border of one for interpolation.
 void ColumnMap::trace_face(const ConcentrationField& field, int face_index,
-                           const FaceRectangle& rectangle, double reach, double reference,
+                           const FaceRectangle& rectangle, double max_distance, double reference,
                            const DepthTolerance& tolerance) {
     const auto first = [&](double u) {
         return std::max(-1, static_cast<int>(std::floor(texel_u(u))) - 1);
@@ -343,7 +344,7 @@ void ColumnMap::trace_face(const ConcentrationField& field, int face_index,
     const auto march = [&](int x, int y, ConcentrationProfile& profile) {
         const double u = (2.0 * (out.u0 + x) + 1.0) / resolution_ - 1.0;
         const double v = (2.0 * (out.v0 + y) + 1.0) / resolution_ - 1.0;
-        field.profile_within(tolerance, {lamp_, glm::normalize(face.direction(u, v))}, reach,
+        field.profile_within(tolerance, {lamp_, glm::normalize(face.direction(u, v))}, max_distance,
                              profile);
     };
     out.columns = ColumnFace(last(rectangle.u_max) - out.u0 + 1, last(rectangle.v_max) - out.v0 + 1,
@@ -376,8 +377,8 @@ void ColumnMap::append_breaks(const Ray& ray, const Interval& interval,
         const Face& face = faces_[static_cast<std::size_t>(segment.face)];
         if (face.columns.empty()) continue;
         const CubeFace projection(segment.face);
-        const Vector3 a = ray.at(segment.stretch.begin) - lamp_;
-        const Vector3 b = ray.at(segment.stretch.end) - lamp_;
+        const Vector3 a = ray.at(segment.interval.begin) - lamp_;
+        const Vector3 b = ray.at(segment.interval.end) - lamp_;
         const double depth_a = projection.depth(a), depth_b = projection.depth(b);
         if (!(depth_a > 0 && depth_b > 0)) continue;
         const double ua = texel_u(projection.u(a)) - face.u0,
@@ -385,14 +386,14 @@ void ColumnMap::append_breaks(const Ray& ray, const Interval& interval,
         const double va = texel_u(projection.v(a)) - face.v0,
                      vb = texel_u(projection.v(b)) - face.v0;
         const double texels = std::max(std::abs(ub - ua), std::abs(vb - va));
-        s.push_back(segment.stretch.begin);
+        s.push_back(segment.interval.begin);
         for (double t = 0; t < 1;) {
             const int spacing = face.columns.spacing(ua + t * (ub - ua), va + t * (vb - va));
             t += std::max(1.0, per_voxel_) * std::max(1, spacing) / texels;
             // Equal steps on the face are not equal steps in space: interpolate s / depth.
             if (spacing > 0 && t < 1)
-                s.push_back((segment.stretch.begin * depth_b * (1 - t) +
-                             segment.stretch.end * depth_a * t) /
+                s.push_back((segment.interval.begin * depth_b * (1 - t) +
+                             segment.interval.end * depth_a * t) /
                             (depth_b * (1 - t) + depth_a * t));
         }
     }
@@ -449,13 +450,13 @@ SunColumnMap::SunColumnMap(const ConcentrationField& of, const Sunlight& sun, do
     height_ = static_cast<int>(std::ceil((most.v - least.v) / texel_)) + 3;
     const auto march = [&](int x, int y, ConcentrationProfile& profile) {
         const double u = first_.u + x * texel_, v = first_.v + y * texel_;
-        // A field that reaches out of the water counts below the surface only.
+        // Of a field that extends out of the water, only the part below the surface counts.
         const double begin = std::clamp(frame_.entry_depth(u, v), first_.depth, most.depth);
         field.profile_within(tolerance, {frame_.world({u, v, begin}), sun.direction},
                              most.depth - begin + texel_, profile);
         for (double& s : profile.s) s += begin - first_.depth;
     };
-    // A sun's light is as bright everywhere: an error counts the same at all distances.
+    // A sun's light does not fall with distance: an error counts the same at all distances.
     face_ = ColumnFace(width_, height_, field.constituent_count(), texel_, 0, tolerance, march);
 }
 

@@ -15,9 +15,9 @@
 namespace uw {
 
 /// Columns along the rays through a rectangle of a cube face's texels, looked up bilinearly between
-/// rays and linearly along them. Rays are as far apart, in powers of two of texels, and their
-/// samples as far along them as a tolerance permits: squares of 16 texels begin with a ray every
-/// four texels and are refined until rays halfway confirm the interpolation.
+/// rays and linearly along them. The spacing of rays, in powers of two of texels, and that of their
+/// samples are as wide as a tolerance permits: squares of 16 texels begin with a ray every four
+/// texels and are refined until rays halfway confirm the interpolation.
 class ColumnFace {
   public:
     /// The field along the ray through texel (u, v), counted from the rectangle's first.
@@ -25,12 +25,12 @@ class ColumnFace {
 
     ColumnFace() = default;
     /// Marches the rays of a rectangle of `width` times `height` texels, its border included.
-    /// `step`: the least distance between samples [m]. `reference`: the distance from the lamp up
-    /// to which errors are allowed less than the tolerance, as the square of the distance [m].
+    /// `step`: the least distance between samples [m]. `reference`: a distance from the lamp [m];
+    /// at shorter distances d the tolerance is multiplied by (d / reference)^2.
     ColumnFace(int width, int height, int constituents, double step, double reference,
                const DepthTolerance& tolerance, const March& march);
 
-    /// The bytes that each texel takes, beside its samples.
+    /// The bytes that each texel takes, in addition to its samples.
     static constexpr std::size_t k_bytes_per_texel = 4 * sizeof(float);
 
     bool empty() const { return spacing_.empty(); }
@@ -82,7 +82,7 @@ class ColumnFace {
 /// depends on depth alone. The optical depth in every band follows from them (physics section 1).
 class ColumnMap {
   public:
-    /// Marches the field's grids once along each texel's ray. At their centre there are about
+    /// Marches the field's grids once along each texel's ray. At the grids' centre there are about
     /// `per_voxel` texels across the finest voxel, and as many steps along it; fewer if a field
     /// that fills its bounds would exceed `memory_budget` [bytes]. `field` is not kept. Columns
     /// have kinks where their rays pass from voxel to voxel: two texels per voxel keep the
@@ -108,7 +108,7 @@ class ColumnMap {
     };
 
     void trace_face(const ConcentrationField& field, int face, const FaceRectangle& rectangle,
-                    double reach, double reference, const DepthTolerance& tolerance);
+                    double max_distance, double reference, const DepthTolerance& tolerance);
     double texel_u(double u) const { return (u + 1) * 0.5 * resolution_ - 0.5; }
 
     Point3 lamp_;
@@ -117,11 +117,11 @@ class ColumnMap {
     int resolution_ = 0;
     double step_ = 0;  // [m]
     std::array<Face, 6> faces_;
-    std::shared_ptr<const Strata> strata_;  // of which columns are exact
+    std::shared_ptr<const Strata> strata_;  // its columns are exact
 };
 
 /// Column concentrations in a sun's light: what a ColumnMap is for a lamp, with parallel rays over
-/// a rectangle across the light that holds the field.
+/// a rectangle across the light that contains the field.
 class SunColumnMap {
   public:
     /// As the constructor of ColumnMap: about `per_voxel` rays across the finest voxel and as many

@@ -18,9 +18,9 @@ class SplattedLight : public DeepShadow {
     SplattedLight(std::shared_ptr<const Shadows> shadows, std::shared_ptr<const Columns> columns)
         : shadows_(std::move(shadows)), columns_(std::move(columns)) {}
 
-    void lit_intervals(const Ray& ray, const Interval& stretch,
+    void lit_intervals(const Ray& ray, const Interval& interval,
                        std::vector<Interval>& lit) const override {
-        shadows_->lit_intervals(ray, stretch, lit);
+        shadows_->lit_intervals(ray, interval, lit);
     }
     void append_column_breaks(const Ray& ray, const Interval& interval,
                               std::vector<double>& s) const override {
@@ -42,7 +42,7 @@ struct DeepShadowOptions {
     int shadow_resolution = 512;              // texels along an edge of a cube face
     double columns_per_voxel = 2;             // texels and steps of columns per voxel edge
     std::size_t column_budget = 80ull << 20;  // bytes of columns, for all lamps of a scene together
-    DepthTolerance column_tolerance{};        // of columns where fewer than those would do
+    DepthTolerance column_tolerance{};        // permits fewer where they suffice
 };
 
 /// One lamp's light, splatted into the scene.

@@ -4,19 +4,19 @@
 
 namespace uw {
 
-void split_by_face(const Ray& ray, const Point3& center, const Interval& stretch,
+void split_by_face(const Ray& ray, const Point3& center, const Interval& interval,
                    std::vector<FaceSegment>& segments) {
     segments.clear();
     const Vector3 o = ray.origin - center;
     const Vector3& d = ray.direction;
-    std::array<double, 8> cuts{stretch.begin, stretch.end};  // ascending
+    std::array<double, 8> cuts{interval.begin, interval.end};  // ascending
     std::size_t count = 2;
     // The face changes where two components are equal in size.
     for (int a = 0; a < 3; ++a) {
         const int b = (a + 1) % 3;
         for (const double sign : {1.0, -1.0}) {
             const double s = -(o[a] + sign * o[b]) / (d[a] + sign * d[b]);
-            if (!(s > stretch.begin && s < stretch.end)) continue;
+            if (!(s > interval.begin && s < interval.end)) continue;
             const auto used = cuts.begin() + static_cast<std::ptrdiff_t>(count++);
             *used = s;
             std::rotate(std::upper_bound(cuts.begin(), used, s), used, used + 1);
@@ -26,7 +26,7 @@ void split_by_face(const Ray& ray, const Point3& center, const Interval& stretch
         if (cuts[i + 1] <= cuts[i]) continue;
         const int face = cube_face_of(ray.at(0.5 * (cuts[i] + cuts[i + 1])) - center);
         if (!segments.empty() && segments.back().face == face)
-            segments.back().stretch.end = cuts[i + 1];
+            segments.back().interval.end = cuts[i + 1];
         else
             segments.push_back({face, {cuts[i], cuts[i + 1]}});
     }

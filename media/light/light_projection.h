@@ -58,12 +58,12 @@ inline int cube_face_of(const Vector3& v) {
 /// A segment of a ray that projects onto one face.
 struct FaceSegment {
     int face = 0;
-    Interval stretch;
+    Interval interval;
 };
 
 /// Splits [begin, end] of `ray` where it crosses from face to face around `center`. Ascending,
 /// without gaps.
-void split_by_face(const Ray& ray, const Point3& center, const Interval& stretch,
+void split_by_face(const Ray& ray, const Point3& center, const Interval& interval,
                    std::vector<FaceSegment>& segments);
 
 /// A rectangle of directions on one cube face, within [-1, 1]^2.
@@ -129,11 +129,11 @@ struct LightSquare {
     friend bool operator==(const LightSquare&, const LightSquare&) = default;
 };
 
-/// The part of `stretch` of a ray that starts at `begin` and changes by `rates` in which it lies
+/// The part of `interval` of a ray that starts at `begin` and changes by `rates` in which it lies
 /// within `half_u` and `half_v` of (u, v); empty if it misses that.
-inline Interval inside(const LightPoint& begin, const LightPoint& rates, const Interval& stretch,
+inline Interval inside(const LightPoint& begin, const LightPoint& rates, const Interval& interval,
                        const LightPoint& middle, double half_u, double half_v) {
-    Interval part = stretch;
+    Interval part = interval;
     const auto clip = [&](double offset, double rate, double half) {
         if (rate == 0) {
             if (std::abs(offset) > half) part.end = part.begin;

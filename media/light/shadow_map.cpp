@@ -23,8 +23,8 @@ DepthPyramid::DepthPyramid(const Grid2D<float>& samples) {
     while (levels_.back().width() > 1) levels_.push_back(halved(levels_.back()));
 }
 
-// Four samples bound the depths of a plane between them: from a point 1 / depth is linear over it,
-// along parallel rays depth is.
+// Four samples bound the depths of a plane between them: 1 / depth is linear over it as viewed from
+// a point, and depth is along parallel rays.
 DepthPyramid::Level DepthPyramid::cell_ranges(const Grid2D<float>& samples) {
     const int n = samples.width() - 1;
     Level level(n, n);
@@ -86,10 +86,10 @@ std::size_t DepthPyramid::bytes() const {
     return total;
 }
 
-/// Collects the lit intervals of a stretch of a ray, in ascending order, and finds edges of shadows
-/// that a shadow map cannot decide by exact shadow rays. `Origin` tells where the light that
-/// reaches a point comes from. (Outside the anonymous namespace, as classes that the header
-/// declares hold one.)
+/// Collects the lit parts of an interval of a ray, in ascending order, and finds the edges of
+/// shadows that a shadow map cannot decide by exact shadow rays. `Origin` returns the origin of the
+/// light that reaches a point. (Not in the anonymous namespace, as members of classes that the
+/// header declares have this type.)
 template <class Origin>
 class LitEdges {
   public:
@@ -97,8 +97,8 @@ class LitEdges {
     LitEdges(const Surfaces& surfaces, Origin origin, const Ray& ray, std::vector<Interval>& lit)
         : surfaces_(surfaces), origin_(origin), ray_(ray), lit_(lit) {}
 
-    /// Sets the stretch within which the intervals that follow lie.
-    void set_stretch(const Interval& stretch) { stretch_ = stretch; }
+    /// Sets the interval that contains all those that follow.
+    void set_interval(const Interval& interval) { interval_ = interval; }
 
     void append(const Interval& interval) {
         if (!lit_.empty() && lit_.back().end == interval.begin)
@@ -131,20 +131,20 @@ class LitEdges {
         return !surfaces_.occluded(origin_(x), x);
     }
 
-    // Tells whether the end of an interval is lit. The ends of the whole stretch may lie on a
+    // Tells whether the end of an interval is lit. The ends of the whole interval may lie on a
     // surface, which occludes nothing within 1e-5 of the distance (Surfaces::occluded), so that
     // visibility is decided slightly inside the interval there.
     bool visible_at_end(double s, double into) {
-        if (s == last_seen_.s) return last_seen_.visible;
-        const bool is_end = s == stretch_.begin || s == stretch_.end;
+        if (s == last_visibility_.s) return last_visibility_.visible;
+        const bool is_end = s == interval_.begin || s == interval_.end;
         const Point3 x = ray_.at(s);
         const double inset = std::min(0.25 * std::abs(into - s), 3e-5 * distance(origin_(x), x));
-        last_seen_ = {s, visible(is_end ? s + std::copysign(inset, into - s) : s)};
-        return last_seen_.visible;
+        last_visibility_ = {s, visible(is_end ? s + std::copysign(inset, into - s) : s)};
+        return last_visibility_.visible;
     }
 
     // Neighbouring intervals share an end.
-    struct Seen {
+    struct EndVisibility {
         double s = -1;
         bool visible = false;
     };
@@ -152,14 +152,14 @@ class LitEdges {
     const Surfaces& surfaces_;
     Origin origin_;
     const Ray& ray_;
-    Interval stretch_;
+    Interval interval_;
     std::vector<Interval>& lit_;
-    Seen last_seen_;
+    EndVisibility last_visibility_;
 };
 
 namespace {
 
-/// A point of a ray as a shadow map sees it.
+/// A point of a ray in the coordinates of a shadow map.
 struct MapPoint {
     double s;      // along the ray [m]
     double depth;  // as the map's depths [m]
@@ -182,7 +182,7 @@ DepthRange bound(const DepthPyramid& pyramid, const MapPoint& a, const MapPoint&
                          cell(std::max(a.u, b.u)), cell(std::max(a.v, b.v)));
 }
 
-// The margin that contains a whole cell from any direction in it is its diagonal, doubled.
+// The margin within which a cell lies entirely, from any direction in it: its diagonal, doubled.
 constexpr double k_beam_margin_texels = 3;
 // The map's depths are float and its texels are compared with points between their centres; a
 // decision requires this relative margin, otherwise the search falls back to exact shadow rays.
@@ -249,15 +249,15 @@ class ShadowMap::Search {
     Search(const ShadowMap& map, const Ray& ray, std::vector<Interval>& lit)
         : map_(map), ray_(ray), edges_(*map.surfaces_, {map.lamp_}, ray, lit) {}
 
-    void run(const Interval& stretch) {
-        edges_.set_stretch(stretch);
+    void run(const Interval& interval) {
+        edges_.set_interval(interval);
         thread_local std::vector<FaceSegment> segments;
-        split_by_face(ray_, map_.lamp_, stretch, segments);
+        split_by_face(ray_, map_.lamp_, interval, segments);
         for (const FaceSegment& segment : segments) {
             face_ = CubeFace(segment.face);
             pyramid_ = &map_.faces_[static_cast<std::size_t>(segment.face)];
             if (pyramid_->empty()) continue;  // outside the beam, if only by rounding
-            descend(project(segment.stretch.begin), project(segment.stretch.end));
+            descend(project(segment.interval.begin), project(segment.interval.end));
         }
     }
 
@@ -311,12 +311,12 @@ class ShadowMap::Search {
     const DepthPyramid* pyramid_ = nullptr;
 };
 
-void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
+void ShadowMap::lit_intervals(const Ray& ray, const Interval& interval,
                               std::vector<Interval>& lit) const {
     lit.clear();
-    if (!(stretch.length() > 0)) return;
+    if (!(interval.length() > 0)) return;
     if (surfaces_->empty()) {
-        lit.push_back(stretch);
+        lit.push_back(interval);
         return;
     }
     Search search(*this, ray, lit);
@@ -325,15 +325,15 @@ void ShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
     const double offset = distance(lamp_, ray.at(foot));
     const double half =
         offset < k_lamp_radius ? std::sqrt(k_lamp_radius * k_lamp_radius - offset * offset) : 0.0;
-    const Interval core{std::clamp(foot - half, stretch.begin, stretch.end),
-                        std::clamp(foot + half, stretch.begin, stretch.end)};
+    const Interval core{std::clamp(foot - half, interval.begin, interval.end),
+                        std::clamp(foot + half, interval.begin, interval.end)};
     if (half == 0 || core.length() == 0) {
-        search.run(stretch);
+        search.run(interval);
         return;
     }
-    search.run({stretch.begin, core.begin});
+    search.run({interval.begin, core.begin});
     search.append(core);
-    search.run({core.end, stretch.end});
+    search.run({core.end, interval.end});
 }
 
 namespace {
@@ -343,16 +343,16 @@ constexpr double k_unbounded = std::numeric_limits<double>::infinity();
 // exact shadow rays decide.
 constexpr double k_sun_margin_texels = 0.25;
 constexpr double k_float_rounding = 1e-6;  // of a depth
-// A shadow's edge is located to this fraction of a ray's stretch, with an average error of half of
-// it. A stretch is at most 15 attenuation lengths (VolumeIntegrator): 2e-4 of the light on it.
+// A shadow's edge is located to this fraction of a ray's interval, with an average error of half of
+// it. An interval is at most 15 attenuation lengths (VolumeIntegrator): 2e-4 of the light on it.
 constexpr double k_sun_edge_width = 3e-5;
-// Outside the squares shadows are looked for in so many pieces of a stretch. The shadow of a single
-// plane has one edge on a ray, which is found whatever this number.
+// Outside the squares an interval is searched for shadows in this many pieces. The shadow of a
+// single plane has one edge on a ray, which is found with any number.
 constexpr int k_open_pieces = 16;
 
 constexpr int k_max_squares = 4;
 constexpr double k_narrower = 4;
-// Half the width of the smallest square, at most twice that [m].
+// Lower bound on half the width of the smallest square [m].
 constexpr double k_min_half = 4;
 // A square follows the camera in steps of this fraction of its half width.
 constexpr double k_square_step = 0.25;
@@ -366,7 +366,7 @@ SunShadowMap::SunShadowMap(const Surfaces& surfaces, const Sunlight& sun,
     for (const LightSquare& square : squares) trace(square);
 }
 
-std::vector<LightSquare> SunShadowMap::squares_around(const Point3& centre, double reach,
+std::vector<LightSquare> SunShadowMap::squares_around(const Point3& centre, double max_distance,
                                                       const Bounds& surfaces, const Sunlight& sun) {
     if (surfaces.empty()) return {};
     const LightFrame frame(sun);
@@ -384,8 +384,8 @@ std::vector<LightSquare> SunShadowMap::squares_around(const Point3& centre, doub
         return LightSquare{step * std::round(middle.u / step), step * std::round(middle.v / step),
                            half};
     };
-    if (all.half > reach) all = around_centre((1 + k_square_step) * reach);
-    all.half *= 1 + 1e-3;  // with what a rounding leaves outside
+    if (all.half > max_distance) all = around_centre((1 + k_square_step) * max_distance);
+    all.half *= 1 + 1e-3;  // a margin for rounding
     std::vector<LightSquare> squares{all};
     for (double half = all.half / k_narrower; half >= k_min_half && squares.size() < k_max_squares;
          half /= k_narrower)
@@ -437,27 +437,27 @@ class SunShadowMap::Search {
           rates_(map.frame_.rates(ray.direction)),
           edges_(*map.surfaces_, {map.frame_.sun()}, ray, lit),
           edge_width_(k_sun_edge_width * whole.length()) {
-        edges_.set_stretch(whole);
+        edges_.set_interval(whole);
     }
 
-    /// Appends the lit parts of `stretch`, by the squares from this one on.
-    void run(std::size_t square, const Interval& stretch) {
-        if (!(stretch.length() > 0)) return;
+    /// Appends the lit parts of `interval`, by the squares from this one on.
+    void run(std::size_t square, const Interval& interval) {
+        if (!(interval.length() > 0)) return;
         if (square == map_.levels_.size()) {
-            look_for_edges(stretch);
+            look_for_edges(interval);
             return;
         }
         const Level& level = map_.levels_[square];
-        const Interval part = inside(begin_, rates_, stretch, {level.square.u, level.square.v, 0},
+        const Interval part = inside(begin_, rates_, interval, {level.square.u, level.square.v, 0},
                                      level.square.half, level.square.half);
         if (!(part.length() > 0)) {
-            run(square + 1, stretch);
+            run(square + 1, interval);
             return;
         }
-        run(square + 1, {stretch.begin, part.begin});
+        run(square + 1, {interval.begin, part.begin});
         level_ = &level;
         descend(project(part.begin), project(part.end));
-        run(square + 1, {part.end, stretch.end});
+        run(square + 1, {part.end, interval.end});
     }
 
   private:
@@ -492,13 +492,13 @@ class SunShadowMap::Search {
         }
     }
 
-    void look_for_edges(const Interval& stretch) {
+    void look_for_edges(const Interval& interval) {
         const double least = whole_.length() / k_open_pieces;
-        const auto pieces = static_cast<int>(std::ceil(stretch.length() / least));
-        const double length = stretch.length() / pieces;
+        const auto pieces = static_cast<int>(std::ceil(interval.length() / least));
+        const double length = interval.length() / pieces;
         for (int i = 0; i < pieces; ++i)
-            edges_.resolve(stretch.begin + i * length,
-                           i + 1 < pieces ? stretch.begin + (i + 1) * length : stretch.end,
+            edges_.resolve(interval.begin + i * length,
+                           i + 1 < pieces ? interval.begin + (i + 1) * length : interval.end,
                            edge_width_);
     }
 
@@ -510,15 +510,15 @@ class SunShadowMap::Search {
     const Level* level_ = nullptr;
 };
 
-void SunShadowMap::lit_intervals(const Ray& ray, const Interval& stretch,
+void SunShadowMap::lit_intervals(const Ray& ray, const Interval& interval,
                                  std::vector<Interval>& lit) const {
     lit.clear();
-    if (!(stretch.length() > 0)) return;
+    if (!(interval.length() > 0)) return;
     if (surfaces_->empty()) {
-        lit.push_back(stretch);
+        lit.push_back(interval);
         return;
     }
-    Search(*this, ray, stretch, lit).run(0, stretch);
+    Search(*this, ray, interval, lit).run(0, interval);
 }
 
 }  // namespace uw

@@ -58,10 +58,10 @@ class ShadowMap {
     /// The directions that the map covers.
     const DirectionCone& beam() const { return beam_; }
 
-    /// The parts of the interval `stretch` of `ray`, within the beam, that the lamp illuminates,
+    /// The parts of the interval `interval` of `ray`, within the beam, that the lamp illuminates,
     /// ascending and disjoint. Edges are accurate to 2e-4 of their distance from the lamp. A shadow
     /// narrower than a texel may be missed.
-    void lit_intervals(const Ray& ray, const Interval& stretch, std::vector<Interval>& lit) const;
+    void lit_intervals(const Ray& ray, const Interval& interval, std::vector<Interval>& lit) const;
 
     std::uint64_t rays_traced() const { return rays_traced_; }
     std::size_t bytes() const;
@@ -81,7 +81,7 @@ class ShadowMap {
 
 /// Visibility of a sun: what a ShadowMap is for a lamp, with parallel rays over squares across the
 /// light, the finest of which decides. Outside them, where only endless surfaces cast shadows,
-/// exact shadow rays look for their edges. What lies above the water's surface casts none.
+/// exact shadow rays look for their edges. Surfaces above the water cast none.
 class SunShadowMap {
   public:
     /// Traces `resolution`^2 rays in each of `squares`, which lie within each other, the smallest
@@ -89,16 +89,16 @@ class SunShadowMap {
     SunShadowMap(const Surfaces& surfaces, const Sunlight& sun,
                  std::span<const LightSquare> squares, int resolution);
 
-    /// The squares with which everything near `centre` is resolved best: the largest holds all
-    /// finite surfaces, but reaches no farther than `reach` from `centre` [m], and each other is a
-    /// quarter of the next as wide and lies around `centre`, which may move within it a little
-    /// before it follows. None without finite surfaces.
-    static std::vector<LightSquare> squares_around(const Point3& centre, double reach,
+    /// Nested squares with the finest resolution near `centre`: the largest contains all finite
+    /// surfaces, but extends no farther than `max_distance` from `centre` [m]; each of the others
+    /// is a quarter as wide as the next one and lies around `centre`, on a lattice, so that it
+    /// stays the same while `centre` moves a little. None without finite surfaces.
+    static std::vector<LightSquare> squares_around(const Point3& centre, double max_distance,
                                                    const Bounds& surfaces, const Sunlight& sun);
 
-    /// As DeepShadow::lit_intervals. Edges are accurate to 3e-5 of the stretch; a shadow narrower
+    /// As DeepShadow::lit_intervals. Edges are accurate to 3e-5 of the interval; a shadow narrower
     /// than a texel may be missed.
-    void lit_intervals(const Ray& ray, const Interval& stretch, std::vector<Interval>& lit) const;
+    void lit_intervals(const Ray& ray, const Interval& interval, std::vector<Interval>& lit) const;
 
     std::uint64_t rays_traced() const { return rays_traced_; }
     std::size_t bytes() const;

@@ -169,7 +169,7 @@ class LightOnAWall {
         double seen = 0;
         for (std::size_t i = 0; i < samples.size(); ++i)
             for (std::size_t j = 0; j < light.emitter_count(); ++j)
-                seen += light.visible_share(i, j) * light.emitters()[j].share() / count;
+                seen += light.visibility(i, j) * light.emitters()[j].fraction() / count;
         return seen;
     }
 
@@ -189,10 +189,10 @@ class LightOnAWall {
 };
 
 /// How much of a lamp's light arrives.
-double seen_share(const SurfaceLight& light) {
+double visible_fraction(const SurfaceLight& light) {
     double seen = 0;
     for (std::size_t j = 0; j < light.emitter_count(); ++j)
-        seen += light.visible_share(0, j) * light.emitters()[j].share();
+        seen += light.visibility(0, j) * light.emitters()[j].fraction();
     return seen;
 }
 
@@ -278,8 +278,8 @@ TEST(AreaLamps, OnePointIsAPoint) {
     const LightOnAWall wall(panel(disk(0.4, 1), {0.6, 0, 0}, 10), 4,
                             {box({0.6, -50, 2}, {60, 50, 2 + 1e-4})});
     for (int pixel = 0; pixel < 32; ++pixel) {
-        EXPECT_EQ(seen_share(wall.at(0.59, 0.1, pixel, 3)), 1);
-        EXPECT_EQ(seen_share(wall.at(0.61, 0.1, pixel, 3)), 0);
+        EXPECT_EQ(visible_fraction(wall.at(0.59, 0.1, pixel, 3)), 1);
+        EXPECT_EQ(visible_fraction(wall.at(0.61, 0.1, pixel, 3)), 0);
     }
 }
 

@@ -154,12 +154,12 @@ TEST(Emission, LightSurfacesAsABallDoes) {
     EXPECT_EQ(scene.assembled().emitters.size(), 64U);
     EXPECT_NEAR(scene.assembled().lamps[0].axis_intensity()[0], intensity, 1e-3 * intensity);
     EXPECT_NEAR(scene.assembled().lamps[0].position().z, 1, 1e-3);
-    double share = 0;
+    double fraction = 0;
     for (const Lamp& emitter : scene.assembled().emitters) {
-        share += emitter.share();
-        EXPECT_NEAR(emitter.share(), 1.0 / 64, 0.25 / 64);  // of 60 or so voxels each
+        fraction += emitter.fraction();
+        EXPECT_NEAR(emitter.fraction(), 1.0 / 64, 0.25 / 64);  // of 60 or so voxels each
     }
-    EXPECT_NEAR(share, 1, 1e-12);
+    EXPECT_NEAR(fraction, 1, 1e-12);
     for (const auto& [x, y] : {std::pair{4, 3}, {0, 0}, {7, 2}}) {
         const PixelResult pixel = scene.pixel(x, y);
         const Vector3 way = pixel.hit.position - Point3(0, 0, 1);

@@ -64,7 +64,7 @@ TEST(LampExtent, WithoutOneALampIsItself) {
     ASSERT_EQ(emitters.size(), 1U);
     EXPECT_EQ(emitters[0].position(), desc.position);
     EXPECT_EQ(emitters[0].index(), 2U);
-    EXPECT_EQ(emitters[0].share(), 1);
+    EXPECT_EQ(emitters[0].fraction(), 1);
     EXPECT_EQ(emitters[0].axis_intensity()[0], 1);
 }
 
@@ -85,19 +85,19 @@ TEST(LampExtent, ItsPointsFillItWhereTheLampIs) {
         const Vector3 along_width = std::cos(turn) * across + std::sin(turn) * up;
         const Vector3 along_height = std::cos(turn) * up - std::sin(turn) * across;
         Vector3 mean(0.0);
-        double share = 0, intensity = 0, widest = 0, highest = 0;
+        double fraction = 0, intensity = 0, widest = 0, highest = 0;
         for (const Lamp& emitter : emitters) {
             const Vector3 offset = moved.inverse() * emitter.position() - desc.position;
             EXPECT_NEAR(glm::dot(offset, desc.direction), 0, 1e-12);
             widest = std::max(widest, std::abs(glm::dot(offset, along_width)));
             highest = std::max(highest, std::abs(glm::dot(offset, along_height)));
             mean += offset / static_cast<double>(samples);
-            share += emitter.share();
+            fraction += emitter.fraction();
             intensity += emitter.axis_intensity()[0];
             EXPECT_EQ(emitter.index(), 2U);
         }
         EXPECT_NEAR(glm::length(mean), 0, 1e-12);
-        EXPECT_NEAR(share, 1, 1e-12);
+        EXPECT_NEAR(fraction, 1, 1e-12);
         EXPECT_NEAR(intensity, 5 / pi, 1e-12);  // of a diffuse lamp of 5 W
         // Moving the mean to the centre may move a point out by less than the steps between them.
         EXPECT_LT(widest, 0.4 * (1 + 1.0 / samples));
@@ -198,7 +198,8 @@ TEST(LampExtent, PenumbrasAreStepsAsSmallAsTheyCanBe) {
                 double seen = 0;
                 for (const Lamp& emitter : round) {
                     const Point3& p = emitter.position();
-                    if (p.x * std::cos(angle) + p.y * std::sin(angle) < t) seen += emitter.share();
+                    if (p.x * std::cos(angle) + p.y * std::sin(angle) < t)
+                        seen += emitter.fraction();
                 }
                 // The segment of a circle.
                 const double truth = 1 - (std::acos(t) - t * std::sqrt(1 - t * t)) / pi;

@@ -237,7 +237,7 @@ TEST(LampPatches, ASpotsEdgeIsThatOfTheWholeLamp) {
                 const Point3 at{x, 0.1, 2};
                 double seen = 0;
                 for (const Lamp& point : points)
-                    seen += point.share() * point.relative_intensity(at - point.position());
+                    seen += point.fraction() * point.relative_intensity(at - point.position());
                 const double expected = mean_over(shape, 0.3, [&](const Vector3& place) {
                     return whole.relative_intensity(from_origin(at) - place);
                 });

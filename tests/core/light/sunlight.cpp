@@ -79,7 +79,7 @@ TEST(Sunlight, PassageHasItsWayAndItsAngle) {
         double shortest = 1e9;
         for (double s = 0; s < 100; s += 0.1)
             if (passage.radius(s) >= 0) shortest = std::min(shortest, s + passage.radius(s));
-        for (double s = passage.reach(2) + 1e-9; s < 100; s += 0.1)
+        for (double s = passage.max_distance(2) + 1e-9; s < 100; s += 0.1)
             if (passage.radius(s) >= 0) {
                 EXPECT_GE(s + passage.radius(s), shortest + 2 - 1e-9);
             }
@@ -92,7 +92,7 @@ TEST(Sunlight, ADiscIsAsBrightAsItsIrradianceOnAPlaneThatFacesIt) {
     std::vector<Lamp> emitters;
     append_emitters(desc, made(desc), 3, 1, {}, emitters);
     ASSERT_EQ(emitters.size(), 200U);
-    double irradiance = 0, share = 0;
+    double irradiance = 0, fraction = 0;
     Vector3 across{};
     const double edge = std::cos(glm::radians(0.5 * k_angle));
     for (const Lamp& emitter : emitters) {
@@ -101,12 +101,12 @@ TEST(Sunlight, ADiscIsAsBrightAsItsIrradianceOnAPlaneThatFacesIt) {
         const double cosine = glm::dot(direction, desc.direction);
         EXPECT_GT(cosine, edge - 1e-3);  // the set is moved a little, to its middle
         irradiance += emitter.axis_intensity()[2] * cosine;
-        share += emitter.share();
+        fraction += emitter.fraction();
         across += emitter.axis_intensity()[2] * direction;
         EXPECT_EQ(emitter.index(), 3U);
     }
     EXPECT_NEAR(irradiance, 3, 1e-12);
-    EXPECT_NEAR(share, 1, 1e-12);
+    EXPECT_NEAR(fraction, 1, 1e-12);
     // The vector irradiance of a disc points along its axis; a lattice of N directions is even to
     // about 1/N^2.
     EXPECT_NEAR(glm::length(glm::cross(across, desc.direction)), 0, 3 * 1e-4);

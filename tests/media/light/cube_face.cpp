@@ -51,13 +51,13 @@ void expect_split(const Ray& ray, const Point3& center, const Interval& stretch)
     std::vector<FaceSegment> segments{{3, {7, 8}}};  // is overwritten
     split_by_face(ray, center, stretch, segments);
     ASSERT_FALSE(segments.empty());
-    EXPECT_EQ(segments.front().stretch.begin, stretch.begin);
-    EXPECT_EQ(segments.back().stretch.end, stretch.end);
+    EXPECT_EQ(segments.front().interval.begin, stretch.begin);
+    EXPECT_EQ(segments.back().interval.end, stretch.end);
     for (std::size_t i = 0; i < segments.size(); ++i) {
         const auto& [face, part] = segments[i];
         EXPECT_LT(part.begin, part.end);
         if (i > 0) {
-            EXPECT_EQ(part.begin, segments[i - 1].stretch.end);
+            EXPECT_EQ(part.begin, segments[i - 1].interval.end);
             EXPECT_NE(face, segments[i - 1].face);
         }
         for (double t = 0.01; t < 1; t += 0.07)
@@ -83,10 +83,10 @@ TEST(CubeFace, SplitsRaysAlongAxesAndThroughTheCentre) {
     ASSERT_EQ(segments.size(), 2U);
     EXPECT_EQ(segments[0].face, 5);
     EXPECT_EQ(segments[1].face, 4);
-    EXPECT_NEAR(segments[0].stretch.end, 2, 1e-15);
+    EXPECT_NEAR(segments[0].interval.end, 2, 1e-15);
     split_by_face({{1, 0, 0}, {0, 1, 0}}, {0, 0, 0}, {0, 5}, segments);
     ASSERT_EQ(segments.size(), 2U);
-    EXPECT_EQ(segments[0].stretch.end, 1);
+    EXPECT_EQ(segments[0].interval.end, 1);
 }
 
 }  // namespace
