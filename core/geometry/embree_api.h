@@ -31,7 +31,7 @@ inline void intersect1(RTCScene scene, Context& context, RTCRayHit& rayhit) {
     rtcIntersect1(scene, &rayhit, &arguments);
 }
 
-/// The same for up to 8 rays that go much the same way: those whose `valid` is -1, not 0.
+/// The same for up to 8 rays with similar directions: those whose `valid` is -1, not 0.
 inline void intersect8(const int* valid, RTCScene scene, Context& context, RTCRayHit8& rayhits) {
     RTCIntersectArguments arguments;
     rtcInitIntersectArguments(&arguments);
@@ -40,7 +40,7 @@ inline void intersect8(const int* valid, RTCScene scene, Context& context, RTCRa
     rtcIntersect8(valid, scene, &rayhits, &arguments);
 }
 
-/// Looks for anything in the way of one ray; sets its tfar to minus infinity if there is.
+/// Looks for any occluder of one ray; sets its tfar to minus infinity if there is one.
 inline void occluded1(RTCScene scene, Context& context, RTCRay& ray) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
@@ -48,7 +48,7 @@ inline void occluded1(RTCScene scene, Context& context, RTCRay& ray) {
     rtcOccluded1(scene, &ray, &arguments);
 }
 
-/// The same for up to 8 rays that go much the same way: those whose `valid` is -1, not 0.
+/// The same for up to 8 rays with similar directions: those whose `valid` is -1, not 0.
 inline void occluded8(const int* valid, RTCScene scene, Context& context, RTCRay8& rays) {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);

@@ -302,8 +302,8 @@ void check_memory(const SceneObjects& objects) {
                    "simplify the meshes");
 }
 
-// What Embree asks, from any of its threads, while it builds.
-bool goes_on(void* stop, double /*share*/) {
+// The progress callback, which Embree calls from any of its threads while it builds.
+bool goes_on(void* stop, double /*progress*/) {
     return !static_cast<const std::atomic<bool>*>(stop)->load(std::memory_order_relaxed);
 }
 
@@ -343,8 +343,8 @@ void EmbreeScene::commit(RTCScene scene) const {
     } catch (const Interrupted&) {
         throw;
     } catch (...) {
-        // Never freed: where memory runs out, tasks of the building may be left behind, and to free
-        // the scene is to wait for them for ever, or std::terminate.
+        // Never freed: if memory runs out, tasks of the build may remain, and freeing the scene
+        // would wait for them forever, or call std::terminate.
         rtcRetainScene(scene);
         throw;
     }

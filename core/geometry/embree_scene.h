@@ -28,7 +28,7 @@ struct Query {
     Vector3 direction{0.0};
     float t = std::numeric_limits<float>::infinity();
     float u = 0, v = 0;  // of meshes
-    /// In the traced scene: of an instance its own, not that of its mesh.
+    /// In the traced scene; for an instance its own, not that of its mesh.
     unsigned geometry = RTC_INVALID_GEOMETRY_ID, primitive = RTC_INVALID_GEOMETRY_ID;
     bool has_doubt = false;  // an occluder was skipped
 
@@ -63,7 +63,7 @@ struct TracedScene {
 /// single variant: a packet of one ray. As it hits nothing that a larger packet with that ray would
 /// miss, the results equal those of single queries even where a packet hits nothing at all.
 
-/// The most queries a packet holds.
+/// The greatest number of queries in a packet.
 inline constexpr std::size_t k_packet_size = 8;
 
 /// Finds the nearest candidate of `query` between the parameters `begin` and `end`.
@@ -103,7 +103,7 @@ class EmbreeScene {
     void attach(RTCScene scene, const MeshObject& object) const;
     void attach_instances() const;
     void attach_spheres() const;
-    /// Builds what the scene holds.
+    /// Builds the structure over the scene's objects.
     void commit(RTCScene scene) const;
     void check(const char* doing) const;
 

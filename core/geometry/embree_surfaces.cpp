@@ -15,9 +15,10 @@ namespace uw {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-/// How often a closest hit at or behind the origin is skipped: a camera in a surface's plane.
+/// How often a closest hit at or behind the origin is skipped, as for a camera in a surface's
+/// plane.
 constexpr int k_max_restarts = 16;
-/// SurfaceHit::geometry of what is no mesh.
+/// SurfaceHit::geometry of hits that are not on a mesh.
 constexpr std::uint32_t k_no_mesh = std::numeric_limits<std::uint32_t>::max();
 
 class EmbreeSurfaces final : public Surfaces, public TexturedSurfaces {
@@ -259,7 +260,7 @@ class EmbreeSurfaces final : public Surfaces, public TexturedSurfaces {
                            });
     }
 
-    /// `query_of(i)`: that whose answer is `blocked[i]`.
+    /// `query_of(i)`: the query whose answer is `blocked[i]`.
     template <class QueryOf>
     void find_blocked(std::span<char> blocked, const QueryOf& query_of) const {
         std::array<Query, k_packet_size> queries;

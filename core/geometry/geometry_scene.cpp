@@ -72,8 +72,8 @@ Bounds bounds_of(const TriangleMesh& mesh) {
     return bounds;
 }
 
-/// What is traced of a mesh, as `desc` says; its ids are still to be set. `reflectance`: the one
-/// given in the scene, if any.
+/// The traced object of a mesh, as described by `desc`; its ids are set later. `reflectance`: the
+/// one given in the scene, if any.
 std::shared_ptr<MeshObject> make_mesh_object(const GeometryDesc& desc, TriangleMesh mesh,
                                              const std::optional<Spectrum>& reflectance) {
     auto object = std::make_shared<MeshObject>();
@@ -97,7 +97,7 @@ std::shared_ptr<MeshObject> make_mesh_object(const GeometryDesc& desc, TriangleM
     return object;
 }
 
-/// `desc` without what changes as it moves.
+/// `desc` without the parts that change as it moves.
 GeometryDesc without_pose(const GeometryDesc& desc) {
     GeometryDesc still = desc;
     if (still.trajectory) still.world_from_object = {};
@@ -197,7 +197,7 @@ constexpr std::uint64_t k_max_probes = 1 << 16;
 // metre comes to a hundredth of it.
 constexpr double k_max_coverage = 4096;
 
-// From fewer of its triangles, little is known of a cube.
+// Fewer sampled triangles than this are not enough to judge a cube.
 constexpr std::size_t k_min_samples = 64;
 
 struct Sample {
@@ -213,7 +213,7 @@ Corners corners_of(const PlacedMesh& mesh, std::uint32_t triangle) {
     return {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
 }
 
-/// Its middle, in the cube of up to twice its size.
+/// Its centre, in the cube of up to twice its size.
 Sample sample_of(const Corners& corners) {
     Bounds bounds;
     for (const Point3& corner : corners) bounds.extend(corner);
@@ -234,7 +234,7 @@ Sample sample_of(const Corners& corners) {
     return {cube, area / (edge * edge), 0, 0};
 }
 
-/// Takes one of every `stride` triangles, and not always the same one, since objects repeat.
+/// Samples one of every `stride` triangles, at a varying position, since objects repeat.
 std::vector<Sample> samples_of(const SceneObjects& objects, std::uint64_t stride) {
     std::vector<Sample> samples;
     samples.reserve(k_max_probes);

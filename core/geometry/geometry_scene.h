@@ -32,53 +32,54 @@ struct FileSurfaces {
         std::vector<SharedMesh::Placement> placements;
     };
     std::vector<std::string> objects, materials;  // MeshFile's
-    std::shared_ptr<const MeshObject> mesh;       // all that is there once; null: nothing
+    std::shared_ptr<const MeshObject> mesh;       // all meshes used once; null: none
     Bounds bounds;                                // of `mesh`
     std::vector<Shared> shared;
 };
 
-/// The surfaces of mesh files, kept from one scene to the next: where some objects move, the files
-/// of all others are read once, and those of the moving ones, too. A file that has been replaced or
-/// written since, or one that it names, is read again.
+/// The surfaces of mesh files, kept from one scene to the next, so that each file is read once even
+/// if objects move. A file is read again if it, or one that it names, has been replaced or written
+/// since.
 class MeshStore {
   public:
-    /// Begins a scene: frees what none of the entries of its `geometry` is, and what the scene
-    /// before had no use for.
+    /// Begins a scene: frees what none of the entries of its `geometry` needs, and what the scene
+    /// before did not use.
     void keep_only(const std::vector<GeometryDesc>& geometry);
 
-    /// What the entry `desc`, that of a file, adds behind `before`. `reflectance`: its own, if any.
-    /// Appends to `warnings` and throws as read_mesh, whether it is read or not.
+    /// The surfaces of the entry `desc`, that of a file, numbered after `before`. `reflectance`:
+    /// its own, if any. Appends to `warnings` and throws as read_mesh does, whether it is read or
+    /// not.
     std::shared_ptr<const FileSurfaces> load(const GeometryDesc& desc, const IdsBefore& before,
                                              const std::optional<Spectrum>& reflectance,
                                              std::vector<std::string>& warnings);
 
-    /// The stamps of the files that the scene built last was read from, as they were then.
+    /// The stamps of the files from which the last scene was read, as they were then.
     FileStamps files() const;
 
   private:
-    /// As it was read for `desc`, whose pose is left out if it moves.
+    /// What was read for `desc`, whose pose is left out if it moves.
     struct Kept {
         GeometryDesc desc;
         FileStamps files;  // the file and those that it names
         std::vector<std::string> warnings;
-        std::shared_ptr<const MeshFile> file;          // of what moves
-        std::shared_ptr<const FileSurfaces> surfaces;  // of what does not,
+        std::shared_ptr<const MeshFile> file;          // of moving objects
+        std::shared_ptr<const FileSurfaces> surfaces;  // of static ones,
         IdsBefore before;                              // with these ids
         bool is_used = true;                           // by the scene built last
     };
     std::vector<Kept> kept_;
 };
 
-/// Triangles that lie over one another by the thousands, such as those of copies in nearly the same
-/// place: no structure tells them apart, and each ray there meets all of them.
+/// Thousands of overlapping triangles, such as those of copies in nearly the same place: no
+/// acceleration structure separates them, and each ray there tests all of them.
 struct TriangleOverlap {
-    double triangles = 0;         // how many there are, about
+    double triangles = 0;         // estimated number
     Point3 where;                 // [m]
     std::uint32_t object_id = 0;  // of one of them
 };
 
-/// Where more surface than covers a cube's face 4096 times lies in one cube, of triangles of its
-/// size. Looks at 65536 triangles of all at most, whatever their number.
+/// Finds a cube that contains triangles of its size whose area exceeds that of its face 4096 times.
+/// Samples at most 65536 triangles.
 std::optional<TriangleOverlap> find_overlap(const SceneObjects& objects);
 
 /// Reads the mesh files of `geometry` and prepares everything for ray tracing, in world space [m].
@@ -96,8 +97,7 @@ std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geomet
                                          const std::vector<double>& wavelengths_nm,
                                          std::vector<std::string>& warnings);
 
-/// The same with the meshes of `meshes`, as far as they are there, which becomes those of this
-/// scene.
+/// The same, but takes from `meshes` those that it contains; it then contains those of this scene.
 std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,
                                          const std::vector<double>& wavelengths_nm,
                                          std::vector<std::string>& warnings, MeshStore& meshes);

@@ -104,7 +104,7 @@ ShortenedJson shorten(std::string json, const std::string& name) {
         if (all[k] != '"') continue;
         const std::size_t begin = k + 1;
         k = end_of_string(all, begin);
-        if (k == std::string_view::npos) break;  // the parser says so
+        if (k == std::string_view::npos) break;  // the parser reports it
         const std::string_view text = all.substr(begin, k - begin);
         if (!shortens || text.size() <= k_longest_parsed || !text.starts_with("data:") ||
             text.find('\\') != std::string_view::npos)
@@ -121,7 +121,7 @@ ShortenedJson shorten(std::string json, const std::string& name) {
     return result;
 }
 
-/// Puts the URIs back of whatever `list` holds.
+/// Puts the URIs of the elements of `list` back.
 void put_back(nlohmann::json& list, std::vector<std::string>& uris) {
     if (!list.is_array()) return;
     for (nlohmann::json& entry : list) {
@@ -347,7 +347,7 @@ std::vector<std::byte> decode_data_uri(const GltfDocument& document, const std::
     static const std::array<int, 256> digits = base64_digits();
     std::string_view text = std::string_view(uri).substr(mark + k_mark.size());
     text = text.substr(0, text.find('='));
-    // Whole groups of four digits are three bytes; what is left is up to two.
+    // Each group of four digits is three bytes; the rest is up to two.
     std::vector<std::byte> bytes(text.size() / 4 * 3 + text.size() % 4 * 3 / 4);
     std::byte* to = bytes.data();
     int bad = 0;

@@ -226,7 +226,7 @@ const GltfCamera& chosen_camera(const GltfItems& items, const GeometryDesc& obje
                                  printable(name), names_of(items.cameras)));
 }
 
-/// The side of the image, in pixels, of which a lens shift is a share.
+/// The side of the image [pixels] in units of which a lens shift is given.
 double shifted_side(GltfCamera::SensorFit fit, int width, int height) {
     switch (fit) {
         case GltfCamera::SensorFit::horizontal:
@@ -373,10 +373,10 @@ std::vector<const GltfLight*> chosen_lights(const GltfItems& items, const Geomet
             add_to(directional);
         }
     }
-    const auto warn = [&](const std::string& names, std::string_view what, std::string_view mend) {
+    const auto warn = [&](const std::string& names, std::string_view what, std::string_view hint) {
         if (!names.empty()) {
             scene.warnings.push_back(
-                fmt::format("{}: {}: {}{}", import.lamps_where, what, names, mend));
+                fmt::format("{}: {}: {}{}", import.lamps_where, what, names, hint));
         }
     };
     warn(directional, "directional lights (suns) are left out",

@@ -41,7 +41,7 @@ struct GltfLight {
 /// Major and minor version of Blender: 3.4 is {3, 4}.
 using BlenderVersion = std::pair<int, int>;
 
-/// What a glTF file has besides its meshes, in the order of its scene's nodes.
+/// The cameras and lights of a glTF file, in the order of its scene's nodes.
 struct GltfItems {
     std::vector<GltfCamera> cameras;
     std::vector<GltfLight> lights;

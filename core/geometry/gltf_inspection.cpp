@@ -143,8 +143,8 @@ class Inspection {
         const bool is_vector = semantic == "POSITION" || semantic == "NORMAL";
         const bool is_uv = semantic.starts_with("TEXCOORD_");
         const bool is_color = semantic.starts_with("COLOR_");
-        const bool is_share = is_uv && entry.value("normalized", false);
-        if ((is_vector || is_uv) && !is_float && !is_share) {
+        const bool is_normalised = is_uv && entry.value("normalized", false);
+        if ((is_vector || is_uv) && !is_float && !is_normalised) {
             document_.fail(fmt::format("glTF {} is quantised; export it as 32-bit floats",
                                        printable(semantic)));
         }

@@ -181,14 +181,14 @@ class Sampler {
         if (times_.size() == 1) return key(0, per_key_ / 2);
         const KnotSpan span = span_of(times_, time);
         const Value a = key(span.first, per_key_ / 2), b = key(span.first + 1, per_key_ / 2);
-        if (interpolation_ == "STEP") return span.share < 1 ? a : b;
+        if (interpolation_ == "STEP") return span.fraction < 1 ? a : b;
         if (per_key_ == 3) return cubic(span, a, key(span.first, 2), key(span.first + 1, 0), b);
         if constexpr (N == 4) {
-            const Rotation turn = turned(rotation(a), rotation(b), span.share);
+            const Rotation turn = turned(rotation(a), rotation(b), span.fraction);
             return {turn.x, turn.y, turn.z, turn.w};
         } else {
             Value value{};
-            for (std::size_t i = 0; i < N; ++i) value[i] = a[i] + span.share * (b[i] - a[i]);
+            for (std::size_t i = 0; i < N; ++i) value[i] = a[i] + span.fraction * (b[i] - a[i]);
             return value;
         }
     }
@@ -210,7 +210,7 @@ class Sampler {
 
     static Value cubic(const KnotSpan& span, const Value& a, const Value& out, const Value& in,
                        const Value& b) {
-        const double t = span.share, t2 = t * t, t3 = t2 * t;
+        const double t = span.fraction, t2 = t * t, t3 = t2 * t;
         Value value{};
         for (std::size_t i = 0; i < N; ++i)
             value[i] = (2 * t3 - 3 * t2 + 1) * a[i] + span.width * (t3 - 2 * t2 + t) * out[i] +

@@ -22,7 +22,7 @@ struct GltfNode {
     Affine file_from_node;                 // all parents' transforms and its own
 };
 
-/// What animations make of a node's own transform at a moment; the rest is as the node has it.
+/// The parts of a node's own transform that animations replace at a moment.
 struct GltfPose {
     std::optional<std::array<double, 3>> translation, scale;
     std::optional<std::array<double, 4>> rotation;  // x, y, z, w, unit
@@ -36,19 +36,19 @@ using GltfPoses = std::map<std::size_t, GltfPose>;
 /// a node in `poses` that has a matrix.
 std::vector<GltfNode> gltf_nodes(const GltfDocument& document, const GltfPoses& poses = {});
 
-/// Where the file's animations have its nodes at `time` [s] (glTF 2.0, section 3.11): all of them
-/// at once; where several move the same part of a node, the first does. Before and after its keys a
-/// node stays where the nearest of them has it. Throws InputError for a sampler without keys, with
-/// times that do not ascend, or with values that do not fit. `document` has passed inspect_gltf.
-/// For gltf_*.cpp only.
+/// The poses of the nodes at `time` [s] by the file's animations (glTF 2.0, section 3.11): all of
+/// them together; if several move the same part of a node, the first one counts. Before its first
+/// and after its last key a node keeps the pose of that key. Throws InputError for a sampler
+/// without keys, with times that do not ascend, or with values that do not fit. `document` has
+/// passed inspect_gltf. For gltf_*.cpp only.
 GltfPoses gltf_poses(const GltfDocument& document, GltfBytes& bytes, double time);
 
 /// Whether a channel moves a node, and not, say, the weights of morph targets. For gltf_*.cpp only.
 bool moves_node(const GltfDocument& document, const nlohmann::json& channel);
 
-/// What of a file would move but stands still here, as a warning without the file's name: what
-/// animations name, unless they move it at the time of `use`, and nodes with a skin. Empty if there
-/// are none. For gltf_*.cpp only.
+/// A warning, without the file's name, about parts of a file that should move but do not here: the
+/// targets of animations, unless they move at the time of `use`, and nodes with a skin. Empty if
+/// there are none. For gltf_*.cpp only.
 std::string unused_motion_of(const GltfDocument& document, const GltfUse& use);
 
 }  // namespace uw

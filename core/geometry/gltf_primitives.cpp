@@ -48,7 +48,7 @@ Rgb color_of(const Json& parent, const char* key, const Rgb& otherwise) {
     return color;
 }
 
-double share_of(const Json& parent, const char* key, double otherwise) {
+double fraction_of(const Json& parent, const char* key, double otherwise) {
     return std::clamp(parent.value(key, otherwise), 0.0, 1.0);
 }
 
@@ -134,8 +134,8 @@ MeshMaterial GltfMaterials::read(std::size_t index) {
     material.normal_map = read_texture(json, "normalTexture", TextureEncoding::linear);
     material.normal_scale = document_.object(json, "normalTexture").value("scale", 1.0);
     if (!use_.pbr) return material;
-    material.metallic = share_of(surface, "metallicFactor", 1);
-    material.roughness = share_of(surface, "roughnessFactor", 1);
+    material.metallic = fraction_of(surface, "metallicFactor", 1);
+    material.roughness = fraction_of(surface, "roughnessFactor", 1);
     material.metallic_roughness_map =
         read_texture(surface, "metallicRoughnessTexture", TextureEncoding::linear);
     material.ior = document_.extension(json, "KHR_materials_ior").value("ior", 1.5);

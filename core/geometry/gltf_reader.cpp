@@ -79,7 +79,7 @@ std::vector<double> times_in(const GltfDocument& document, std::vector<const Jso
 
 std::optional<GltfKeys> gltf_keys(const std::filesystem::path& file) {
     try {
-        // Without the word there is no need to parse what may be 100 MB.
+        // Without that word the file, which may be 100 MB, need not be parsed.
         if (read_gltf_text(file).find("\"animations\"") == std::string::npos) return std::nullopt;
         const GltfDocument document(file);
         const std::vector<const Json*> inputs = key_accessors(document);
@@ -95,7 +95,7 @@ std::optional<GltfKeys> gltf_keys(const std::filesystem::path& file) {
 }
 
 bool are_whole_frames(const std::vector<double>& times, double rate) {
-    // Files hold times as 32-bit floats; exporters may have added them up.
+    // Files contain times as 32-bit floats, which exporters may have summed up.
     constexpr double k_tolerance = 0.01;  // [frames]
     constexpr double k_relative = 2.5e-7;
     return std::ranges::all_of(times, [&](double time) {
@@ -105,7 +105,7 @@ bool are_whole_frames(const std::vector<double>& times, double rate) {
 }
 
 std::optional<double> frame_rate_of(const std::vector<double>& key_times) {
-    // Those of television last: of few frames they cannot be told from whole numbers.
+    // Television's rates come last: over few frames they cannot be told from whole numbers.
     constexpr double k_television = 1000.0 / 1001;
     constexpr std::array<double, 14> k_rates{12,
                                              15,
@@ -123,7 +123,7 @@ std::optional<double> frame_rate_of(const std::vector<double>& key_times) {
                                              60 * k_television};
     for (const double rate : k_rates) {
         if (!are_whole_frames(key_times, rate)) continue;
-        // Keys all of whose frames are even, say, are those of whole frames at half the rate, too.
+        // If all keys are at even frames, say, they are also at whole frames of half the rate.
         long long common = 0;
         for (const double time : key_times) common = std::gcd(common, std::llround(time * rate));
         if (common == 1) return rate;
@@ -161,7 +161,8 @@ struct MeshUse {
     std::uint32_t object = 0;
 };
 
-/// Names what a file shows and sorts it into what is there once and what several nodes share.
+/// Names the objects of a file and sorts its meshes into those used once and those that several
+/// nodes share.
 class GltfContents {
   public:
     GltfContents(const GltfDocument& document, const GltfPoses& poses)

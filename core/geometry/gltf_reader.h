@@ -21,17 +21,16 @@ struct GltfKeys {
     std::vector<double> times;  ///< of all, ascending, each once [s]; none if they cannot be read
 };
 
-/// The keys of a file; none if nothing in it moves. A file that cannot be read has none: whoever
-/// loads it says what is wrong with it.
+/// The keys of a file; none if nothing in it moves. A file that cannot be read has none: loading it
+/// reports the error.
 std::optional<GltfKeys> gltf_keys(const std::filesystem::path& file);
 
-/// The frames per second, of those that animations are made with, at which a file's keys are those
-/// of whole frames; none if there is no such rate, or if the keys, few as they are, would suit many
-/// rates. The format has times in seconds, and says nothing of frames.
+/// The usual frame rate at which all keys of a file are at whole frames; none if there is no such
+/// rate, or if the keys are so few that they would fit many rates. The format gives times in
+/// seconds and does not define frames.
 std::optional<double> frame_rate_of(const std::vector<double>& key_times);
 
-/// Whether all of these times [s] are those of whole frames at a rate, but for the rounding of
-/// files.
+/// Whether all of these times [s] are at whole frames of a rate, up to the rounding of files.
 bool are_whole_frames(const std::vector<double>& times, double rate);
 
 /// file_from_node of everything that a glTF file counts as an object, in the order of

@@ -40,8 +40,8 @@ struct MeshMaterial {
     Rgb base_color{0.5, 0.5, 0.5};  // 0..1; also multiplied by vertex colours
     TextureUse base_map;
     bool double_sided = true;  // as in the file; surfaces are opaque from both sides
-    /// There is a hole where alpha (times that of base map and vertices) is below the cutoff; 0:
-    /// nowhere.
+    /// The surface has holes where alpha (times that of base map and vertices) is below the cutoff;
+    /// 0: no holes.
     double alpha = 1, alpha_cutoff = 0;
     Rgb emission{0, 0, 0};  // radiance [W m^-2 sr^-1], on both sides
     TextureUse emission_map;
@@ -54,7 +54,7 @@ struct MeshMaterial {
     std::uint32_t number = 0;            // in MeshFile::materials, from 1; 0: none of the file's
 };
 
-/// Triangles with what their corners and faces carry. Inert.
+/// Triangles with the attributes of their corners and faces. Inert.
 struct TriangleMesh {
     std::vector<float> positions;          // x, y, z per vertex
     std::vector<std::uint32_t> triangles;  // three vertices each; all in range
@@ -86,9 +86,9 @@ struct SharedMesh {
     std::vector<Placement> placements;
 };
 
-/// What a mesh file shows, in the file's own space [m]. Inert.
+/// The contents of a mesh file, in the file's own space [m]. Inert.
 struct MeshFile {
-    TriangleMesh mesh;               // all that is there once, node hierarchy applied
+    TriangleMesh mesh;               // all meshes used once, node hierarchy applied
     std::vector<SharedMesh> shared;  // the rest; none without triangles
     /// The names of what the file counts as an object, in its order: glTF nodes that show a mesh,
     /// OBJ's objects and groups, the whole of other files. Not unique.
@@ -98,7 +98,7 @@ struct MeshFile {
     bool has_triangles() const { return !mesh.triangles.empty() || !shared.empty(); }
 };
 
-/// What the scene takes from a glTF file besides triangles and diffuse materials.
+/// What the scene uses of a glTF file besides triangles and diffuse materials.
 struct GltfUse {
     /// Its camera or lamps, which import_gltf reads: the file need not show a mesh.
     bool camera_or_lamps = false;

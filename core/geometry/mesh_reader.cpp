@@ -104,7 +104,8 @@ void bring_within(T& value, double low, double high, bool& odd) {
     odd = true;
 }
 
-/// Calls `fix(values, odd)` for the `width` values of each vertex; how many of them were odd.
+/// Calls `fix(values, odd)` for the `width` values of each vertex; returns how many vertices were
+/// odd.
 template <class Fix>
 std::uint64_t count_odd(std::vector<float>& values, std::size_t width, const Fix& fix) {
     std::uint64_t count = 0;
@@ -217,8 +218,8 @@ void check_file(const std::filesystem::path& file) {
     }
 }
 
-// Every ray would meet the triangles of all of them: 3000 nodes that show the same 3000 triangles
-// in the same place are nine million in its way.
+// Every ray would test the triangles of all of them: 3000 nodes that show the same 3000 triangles
+// in the same place make nine million.
 void drop_coincident_placements(MeshFile& content, const std::string& name,
                                 std::vector<std::string>& warnings) {
     std::size_t before = 0, after = 0;
@@ -233,9 +234,9 @@ void drop_coincident_placements(MeshFile& content, const std::string& name,
             return values;
         };
         before += shared.placements.size();
-        std::set<std::array<double, 12>> seen;
+        std::set<std::array<double, 12>> known;
         std::erase_if(shared.placements, [&](const SharedMesh::Placement& placement) {
-            return !seen.insert(key(placement)).second;
+            return !known.insert(key(placement)).second;
         });
         after += shared.placements.size();
     }

@@ -34,7 +34,7 @@ inline constexpr double k_max_uv = 1e7;
 /// normal map.
 inline constexpr double k_max_emission = 1e12, k_max_normal_scale = 1e6;
 
-/// How many values of a file were out of range, or not finite, and brought into it.
+/// How many values of a file were out of range, or not finite, and have been clamped.
 struct ClampedValues {
     std::uint64_t uvs = 0;     // vertices; they became 0
     std::uint64_t colors = 0;  // vertices whose colour or alpha is not in 0..1
@@ -44,17 +44,17 @@ struct ClampedValues {
     void report(const std::string& name, std::vector<std::string>& warnings) const;
 };
 
-/// Brings what the vertices and materials of a mesh carry, whatever file it comes from, into the
-/// range that `mesh.h` states, in place, and adds to `clamped`. Tangents that are not finite become
+/// Clamps the attributes of the vertices and materials of a mesh, from any file, to the ranges that
+/// `mesh.h` states, in place, and adds to `clamped`. Tangents that are not finite become
 /// zero, which is none.
 void clamp_values(TriangleMesh& mesh, ClampedValues& clamped);
 
 /// Reads what a glTF (.gltf, .glb), OBJ, PLY or STL file shows, in the file's coordinates: no axis
 /// or unit is converted. For glTF, the node hierarchy, materials (MeshMaterial), vertex colours,
 /// normals and tangents are read; for OBJ, materials, vertex colours and normals; for PLY, vertex
-/// colours and normals. What has no material has reflectance 0.5, or its vertex colours. Polygons
-/// are split into triangles, degenerate triangles and those with invalid corners are dropped, and
-/// no normals are generated.
+/// colours and normals. A mesh without material has reflectance 0.5, or its vertex colours.
+/// Polygons are split into triangles, degenerate triangles and those with invalid corners are
+/// dropped, and no normals are generated.
 ///
 /// Appends one line to `warnings` for everything dropped or ignored. Throws IoError if the file
 /// cannot be opened, InputError if it is damaged, of another format, or has no triangles, unless

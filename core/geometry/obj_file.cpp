@@ -201,7 +201,7 @@ namespace {
 
 constexpr std::size_t k_max_library = std::size_t{16} << 20;
 
-/// What is lost with a statement that cannot be used; empty if nothing is.
+/// Describes what is lost with a statement that is not supported; empty if nothing is.
 std::string_view loss_of(std::string_view keyword) {
     static const std::map<std::string_view, std::string_view> k_losses{
         {"bump", "bump maps"},    {"map_bump", "bump maps"},   {"norm", "bump maps"},
@@ -237,7 +237,7 @@ class Library {
         return value;
     }
 
-    double share(TextLine& line) const { return std::clamp(number(line), 0.0, 1.0); }
+    double fraction(TextLine& line) const { return std::clamp(number(line), 0.0, 1.0); }
 
     /// One number stands for three.
     Rgb color(TextLine& line, double most) const {
@@ -317,13 +317,13 @@ class Library {
         } else if (keyword == "map_ke") {
             material.emission_map = map(line);
         } else if (keyword == "pr") {
-            material.roughness = share(line);
+            material.roughness = fraction(line);
             has_roughness_ = true;
         } else if (keyword == "ns") {
             const double exponent = number(line);
             if (!has_roughness_) material.roughness = roughness_of_exponent(exponent);
         } else if (keyword == "pm") {
-            material.metallic = share(line);
+            material.metallic = fraction(line);
         } else if (keyword == "ni") {
             material.ior = std::max(number(line), 1.0);
         } else if (keyword == "d") {

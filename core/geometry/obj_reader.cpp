@@ -49,7 +49,7 @@ bool is_inside(const fs::path& relative) {
     return !normal.is_absolute() && !has_drive && !normal.empty() && *normal.begin() != "..";
 }
 
-/// What an OBJ file says of its libraries, sorted by what can be done with them.
+/// The libraries that an OBJ file names, sorted by how they can be used.
 struct Libraries {
     std::vector<fs::path> files;
     std::vector<std::string> missing, outside;
@@ -132,9 +132,9 @@ class Materials {
 
     void report(const std::string& obj, const Libraries& libraries,
                 std::vector<std::string>& warnings) const {
-        const auto warn = [&](const auto& names, const char* what, const char* mend) {
+        const auto warn = [&](const auto& names, const char* what, const char* hint) {
             if (!names.empty())
-                warnings.push_back(fmt::format("{}: {}: {}; {}", obj, what, listed(names), mend));
+                warnings.push_back(fmt::format("{}: {}: {}; {}", obj, what, listed(names), hint));
         };
         warn(libraries.missing, "material libraries are missing", "put them beside the OBJ file");
         warn(libraries.outside, "material libraries outside the OBJ's folder are not read",
@@ -243,8 +243,8 @@ namespace {
 
 // What fits a large machine, not the format's limit.
 constexpr std::size_t k_max_corners = 1'500'000'000;
-// Combinations at one position that are looked through for a corner's own. A tip where more meet
-// has some of them twice, which nobody sees; time stays proportional to the corners.
+// The number of combinations at one position that are searched for a corner's own. Where more meet,
+// some vertices are duplicated, which is harmless; time stays proportional to the corners.
 constexpr int k_max_compared = 64;
 
 /// Makes vertices of the file's positions, texture coordinates and normals, each combination once.

@@ -283,7 +283,7 @@ struct VertexLayout {
     double color_unit = 1;  // of the file's colours in 0..1
 };
 
-/// What one step of a colour is worth; 0 for types that hold none.
+/// The value of one step of a colour; 0 for types that cannot contain one.
 double color_unit_of(PlyType type) {
     switch (type) {
         case PlyType::uint8:

@@ -14,11 +14,11 @@
 namespace uw {
 namespace {
 
-/// The most corners of a polygon whose rest may become a fan: its triangles overlap, and rays have
-/// to pay for that.
+/// The most corners of a polygon whose remainder may become a fan, whose triangles may overlap,
+/// which costs time for each ray.
 constexpr std::size_t k_max_fan_corners = 1000;
-/// Steps of the search for ears, of some 15 ns. Outlines of what was made, not spun, need some 20
-/// per corner; small ones may need what they like.
+/// Limit on the steps of the search for ears, of some 15 ns each. Outlines of real objects need
+/// some 20 per corner; small polygons are not limited.
 constexpr std::size_t k_steps = 100'000, k_steps_per_corner = 200;
 
 struct Corner {
@@ -85,7 +85,8 @@ class ReflexCorners {
         for (const std::size_t k : reflex) corners_[next[cell_of(polygon[k].at)]++] = k;
     }
 
-    /// Whether any of `ear` lies in it, its own corners aside. Adds to `steps` what it took.
+    /// Whether any of these corners lies in the triangle `ear`, except its own. Adds the steps that
+    /// it took to `steps`.
     bool any_within(const Corner& a, const Corner& b, const Corner& c, std::size_t& steps) const {
         if (corners_.empty()) return false;
         const std::size_t first = cell(std::min({a.at.y, b.at.y, c.at.y}), 1);
@@ -108,7 +109,7 @@ class ReflexCorners {
     /// The cells that a triangle touches in one row of them, first and last; thin ones touch few.
     std::pair<std::size_t, std::size_t> columns_in_row(
         std::size_t row, const std::array<glm::dvec2, 3>& triangle) const {
-        // Wider by far more than rounding is.
+        // Widened by far more than rounding.
         constexpr double k_margin = 1e-6;
         const double height = (high_.y - low_.y) / static_cast<double>(side_);
         const double y0 = low_.y + (static_cast<double>(row) - k_margin) * height;
@@ -118,7 +119,7 @@ class ReflexCorners {
             const glm::dvec2 p = triangle[k], q = triangle[(k + 1) % 3];
             const double rise = q.y - p.y;
             for (const double y : {y0, y1, p.y, q.y}) {
-                // The ends of the row count too: what lies beyond the first and last is in them.
+                // The first and last cells of a row also contain what lies beyond them.
                 const bool is_in_row = (y >= y0 || row == 0) && (y <= y1 || row + 1 == side_);
                 if (!is_in_row || !(y >= std::min(p.y, q.y) && y <= std::max(p.y, q.y))) continue;
                 const double x = y == p.y   ? p.x
@@ -139,7 +140,7 @@ class ReflexCorners {
     std::size_t cell(double x, int axis) const {
         const double place = (x - low_[axis]) / (high_[axis] - low_[axis]);
         const double n = static_cast<double>(side_);
-        // Also where it is not a number: a box without size, or corners that are none.
+        // Also if it is NaN, as for an empty box or invalid corners.
         return place > 0 ? static_cast<std::size_t>(std::min(place * n, n - 1)) : 0;
     }
     std::size_t cell_of(const glm::dvec2& p) const { return cell(p.y, 1) * side_ + cell(p.x, 0); }

@@ -262,7 +262,7 @@ Vector3 MeshPlace::shading_normal(const Vector3& flat) const {
     // The map is defined for the front: the side of the file's normals, or that of the winding
     // order.
     const Vector3 front = interpolated ? *interpolated : turn_side(flat);
-    // Seen from behind, bumps appear as dents.
+    // From behind, bumps appear as dents.
     Vector3 normal = glm::dot(front, flat) < 0 ? -bent(front) : bent(front);
     const double toward = glm::dot(normal, flat);
     if (toward < 0) normal = glm::normalize(normal - toward * flat);
@@ -279,7 +279,7 @@ Spectrum base_color(const MeshObject& object, const MeshPlace& place,
     return object.reflectance ? *object.reflectance : bands.from_rgb(place.base_color());
 }
 
-/// Fills what textures have a part in, but for the material. The geometric normal is there.
+/// Fills the members that depend on textures, except the material. The geometric normal is given.
 void shade_with_textures(const MeshObject& object, const MeshPlace& place,
                          const ReflectanceBands& bands, SurfaceHit& hit) {
     hit.normal = place.shading_normal(hit.geometric_normal);
@@ -305,9 +305,9 @@ Bounds SphereObject::world_bounds() const {
     const Point3 middle = world_from_object * center;
     const Matrix3 rows = glm::transpose(world_from_object.linear());
     Bounds bounds;
-    const Vector3 reach(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
-    bounds.extend(middle - radius * reach);
-    bounds.extend(middle + radius * reach);
+    const Vector3 extent(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
+    bounds.extend(middle - radius * extent);
+    bounds.extend(middle + radius * extent);
     return bounds;
 }
 

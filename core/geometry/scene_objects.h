@@ -154,7 +154,7 @@ void add_to_texture_of_mesh(const PlacedMesh& mesh, const ReflectanceBands& band
                             const SurfaceHit& hit, std::span<const double> by_reflectance,
                             TextureGradient& gradient);
 
-/// Whether the material of a mesh's triangle has a texture that shows in what filter_mesh replaces.
+/// Whether the material of a mesh's triangle has a texture that affects what filter_mesh replaces.
 bool is_textured_mesh(const PlacedMesh& mesh, std::uint32_t triangle);
 
 /// TexturedSurfaces::filter_textures for the hit of a mesh (SurfaceHit::triangle).

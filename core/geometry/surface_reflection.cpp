@@ -19,7 +19,7 @@ double alpha_squared(double roughness) {  // alpha is the roughness squared
     return rough * rough * rough * rough;
 }
 
-// Found by trial: a smooth metal shows a faint pattern of a panel's points at most.
+// Found by trial: on a smooth metal, at most a faint pattern of a panel's points is visible.
 constexpr double k_patch_blur = 0.7;
 
 // D of GGX for a unit half vector on the side of the normal.
@@ -39,8 +39,8 @@ MicrofacetLobe microfacet_lobe(const Vector3& normal, const Vector3& to_camera,
     const double length = glm::length(sum);
     if (!(length > 0)) return {};  // the lamp shines from straight behind
     const Vector3 half = sum / length;
-    // The normal turns by half the angle that the light does, and alpha is the tangent of an angle
-    // between normals. Points of a lattice lie nearly two radii of their patches apart.
+    // The half vector turns by half the angle by which the light does, and alpha is the tangent of
+    // an angle between normals. Neighbouring emitters lie nearly two radii of their patches apart.
     const double blur = k_patch_blur * lamp_angle;
     const double alpha2 = std::min(alpha_squared(roughness) + blur * blur, 1.0);
     // A shading normal may point away from the viewer.

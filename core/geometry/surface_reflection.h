@@ -28,16 +28,16 @@ struct MicrofacetLobe {
 
     double fresnel(double f0) const { return f0 + (1 - f0) * fresnel_weight; }
 };
-/// A lamp that is seen within the small angle `lamp_angle` to each side [radians] counts as a point
-/// before a surface that is rougher by as much as makes the highlights of such lamps, side by side,
-/// a single even one.
+/// Evaluates the lobe. A lamp of small angular radius `lamp_angle` [radians] is treated as a point,
+/// with the roughness increased so that the highlights of such lamps side by side join to a single
+/// smooth one.
 MicrofacetLobe microfacet_lobe(const Vector3& normal, const Vector3& to_camera,
                                const Vector3& to_lamp, double roughness, double lamp_angle = 0);
 
-/// tan(theta / 2) of the angle theta between the normal and a half vector drawn with the density
+/// Samples tan(theta / 2) of the angle theta between the normal and a half vector with the pdf
 /// D (n.h) over directions; `u` is uniform in [0, 1) (Walter et al. 2007, equation 35).
 double sample_half_vector(double u, double roughness);
-/// The density over directions [1/sr] of `to_light` when `to_camera` is mirrored at such a half
+/// The pdf over directions [1/sr] of `to_light` as the reflection of `to_camera` at such a half
 /// vector: D (n.h) / (4 v.h).
 double half_vector_density(const Vector3& normal, const Vector3& to_camera, const Vector3& to_light,
                            double roughness);

@@ -18,7 +18,7 @@ struct SurfaceName {
     std::optional<std::size_t> entry;  // of `geometry`, from 0; none: of the water's surface
 };
 
-/// What the numbers in the layers `id` and `material` stand for: the first has number 1.
+/// The names of the numbers in the layers `id` and `material`: the first has number 1.
 struct SurfaceNames {
     std::vector<SurfaceName> objects, materials;
 };
@@ -31,8 +31,8 @@ struct SurfaceMaterial {
     Spectrum f0{};           // reflectance at normal incidence, in water
 };
 
-/// The parallelogram of a surface that a hit stands for, around it: between the tangents at the
-/// hit, in world space [m]. Both zero: the hit is a point.
+/// The footprint of a hit: the parallelogram around it that is spanned by two tangents of the
+/// surface, in world space [m]. Both zero: the hit is a point.
 struct SurfaceSpread {
     Vector3 across{0.0}, down{0.0};
 };
@@ -47,7 +47,7 @@ struct SurfaceHit {
     std::uint32_t object_id = 0;        // in Surfaces::names, from 1
     std::uint32_t material_id = 0;      // likewise; 0: none of a file's
     bool has_material = false;          // more than diffuse reflection: see Surfaces::material
-    bool is_water_surface = false;      // seen from below (core/light/submerged.h)
+    bool is_water_surface = false;      // viewed from below (core/light/submerged.h)
     // For Surfaces::material: the triangle and the position on it.
     std::uint32_t geometry = 0, triangle = 0;
     double u = 0, v = 0;
@@ -101,7 +101,7 @@ class Surfaces {
     /// World bounds of all finite surfaces, a little loose around instances; empty if there are
     /// none.
     virtual Bounds bounds() const = 0;
-    /// Instances count as often as they are shown.
+    /// Counts the triangles of instances once per instance.
     virtual std::uint64_t triangle_count() const = 0;
     virtual bool empty() const = 0;
 };

@@ -190,18 +190,18 @@ std::shared_ptr<const Texture> read_texture(const std::filesystem::path& file,
 
 namespace {
 
-/// The texels that a texel of half as many covers along a side, of which the outer ones may lie in
-/// it in part, and their shares.
+/// The texels that a texel of the next coarser level covers along a side, and their weights: the
+/// outer ones may be covered in part.
 struct HalvedTexel {
     int first = 0, count = 0;
-    std::array<double, 3> shares{};
+    std::array<double, 3> fractions{};
 
     HalvedTexel(int texel, int size, int half) {
         const double width = static_cast<double>(size) / half;
         const double begin = texel * width, end = std::min(begin + width, double(size));
         first = static_cast<int>(begin);
         for (int i = first; i < end && count < 3; ++i)
-            shares[static_cast<std::size_t>(count++)] =
+            fractions[static_cast<std::size_t>(count++)] =
                 (std::min(end, i + 1.0) - std::max(begin, double(i))) / width;
     }
 };
@@ -225,13 +225,13 @@ Texture::Level Texture::halved(const Level& level) {
             Rgb sum{};
             for (int j = 0; j < rows.count; ++j)
                 for (int i = 0; i < column.count; ++i) {
-                    const double share = rows.shares[static_cast<std::size_t>(j)] *
-                                         column.shares[static_cast<std::size_t>(i)];
+                    const double weight = rows.fractions[static_cast<std::size_t>(j)] *
+                                          column.fractions[static_cast<std::size_t>(i)];
                     const float* texel =
                         &level.rgb[3 * (static_cast<std::size_t>(rows.first + j) *
                                             static_cast<std::size_t>(level.width) +
                                         static_cast<std::size_t>(column.first + i))];
-                    for (std::size_t c = 0; c < 3; ++c) sum[c] += share * double{texel[c]};
+                    for (std::size_t c = 0; c < 3; ++c) sum[c] += weight * double{texel[c]};
                 }
             for (const double value : sum) half.rgb.push_back(static_cast<float>(value));
         }
@@ -248,18 +248,19 @@ void TextureGradient::add(double u, double v, const TextureLookup& lookup,
                           const TextureSpread& spread, const Rgb& weights) {
     texture_->visit(
         u, v, lookup, spread,
-        [&](std::size_t level, double at_u, double at_v, const TextureLookup& how, double share) {
+        [&](std::size_t level, double at_u, double at_v, const TextureLookup& how, double weight) {
             const Texture::Footprint around =
                 Texture::footprint(texture_->levels_[level], at_u, at_v, how);
             for (std::size_t k = 0; k < around.count; ++k)
                 for (std::size_t c = 0; c < 3; ++c)
                     levels_[level][3 * around.texels[k] + c] +=
-                        share * around.weights[k] * weights[c];
+                        weight * around.weights[k] * weights[c];
         });
 }
 
 std::vector<double> TextureGradient::by_texel() const {
-    // From the coarsest level on, each texel hands to those that it is the mean of.
+    // From the coarsest level on, each texel passes its derivatives to those of which it is the
+    // mean.
     std::vector<double> coarse = levels_.back();
     for (std::size_t i = levels_.size() - 1; i-- > 0;) {
         const Texture::Level& level = texture_->levels_[i];
@@ -274,13 +275,13 @@ std::vector<double> TextureGradient::by_texel() const {
                                                         static_cast<std::size_t>(x))];
                 for (int j = 0; j < rows.count; ++j)
                     for (int k = 0; k < columns.count; ++k) {
-                        const double share = rows.shares[static_cast<std::size_t>(j)] *
-                                             columns.shares[static_cast<std::size_t>(k)];
+                        const double weight = rows.fractions[static_cast<std::size_t>(j)] *
+                                              columns.fractions[static_cast<std::size_t>(k)];
                         double* const texel =
                             &fine[3 * (static_cast<std::size_t>(rows.first + j) *
                                            static_cast<std::size_t>(level.width) +
                                        static_cast<std::size_t>(columns.first + k))];
-                        for (std::size_t c = 0; c < 3; ++c) texel[c] += share * from[c];
+                        for (std::size_t c = 0; c < 3; ++c) texel[c] += weight * from[c];
                     }
             }
         }
@@ -339,24 +340,25 @@ void Texture::visit(double u, double v, const TextureLookup& lookup, const Textu
     const double last = static_cast<double>(levels_.size() - 1);
     const double level = std::min(std::log2(width_beside), last);
     const auto finer = static_cast<std::size_t>(level);
-    const double coarser_share = level - std::floor(level);
+    const double coarser_weight = level - std::floor(level);
     const TextureLookup linear{TextureFilter::linear, lookup.wrap_u, lookup.wrap_v};
     for (int i = 0; i < count; ++i) {
         const double at = (i + 0.5) / count - 0.5;
         const double at_u = u + at * along[0], at_v = v + at * along[1];
-        look_up(finer, at_u, at_v, linear, (1 - coarser_share) / count);
-        if (coarser_share > 0) look_up(finer + 1, at_u, at_v, linear, coarser_share / count);
+        look_up(finer, at_u, at_v, linear, (1 - coarser_weight) / count);
+        if (coarser_weight > 0) look_up(finer + 1, at_u, at_v, linear, coarser_weight / count);
     }
 }
 
 Rgb Texture::sample(double u, double v, const TextureLookup& lookup,
                     const TextureSpread& spread) const {
     Rgb sum{};
-    visit(u, v, lookup, spread,
-          [&](std::size_t level, double at_u, double at_v, const TextureLookup& how, double share) {
-              const Rgb texel = sample(levels_[level], at_u, at_v, how);
-              for (std::size_t i = 0; i < 3; ++i) sum[i] += share * texel[i];
-          });
+    visit(
+        u, v, lookup, spread,
+        [&](std::size_t level, double at_u, double at_v, const TextureLookup& how, double weight) {
+            const Rgb texel = sample(levels_[level], at_u, at_v, how);
+            for (std::size_t i = 0; i < 3; ++i) sum[i] += weight * texel[i];
+        });
     return sum;
 }
 

@@ -36,14 +36,14 @@ struct TextureLookup {
 /// How an image encodes its values.
 enum class TextureEncoding { srgb, linear };
 
-/// The parallelogram that a look-up averages over: its sides as (u, v), and around the point. Zero:
-/// the point alone.
+/// The parallelogram over which a look-up averages, centred at the point: its sides as (u, v).
+/// Zero: the point alone.
 struct TextureSpread {
     std::array<double, 2> across{}, down{};
 };
 
-/// A linear RGB image; immutable, shared by materials, thread safe. Beside it are images of half
-/// its size, of a quarter, and so on, each the mean of the one before, for look-ups over many
+/// A linear RGB image; immutable, shared by materials, thread safe. A mip map: images of half its
+/// size, of a quarter, and so on, each averaged from the one before, serve look-ups over many
 /// texels.
 class Texture {
   public:
@@ -54,14 +54,14 @@ class Texture {
     explicit Texture(const PixelImage& image, TextureEncoding encoding = TextureEncoding::srgb,
                      bool keep_alpha = false);
 
-    /// The same of an image that is read in parts: what is in memory are images of at most
-    /// `max_texels`, made of all of it here; finer ones are looked up in the file. Throws
-    /// InputError if it cannot be read; messages call it `name`.
+    /// The same for an image that is read in parts: levels of at most `max_texels` are made here
+    /// and kept in memory; finer ones are looked up in the file. Throws InputError if it cannot be
+    /// read; messages call it `name`.
     Texture(std::shared_ptr<const PartialImage> image, const std::string& name,
             TextureEncoding encoding, bool keep_alpha,
             std::int64_t max_texels = std::int64_t{1} << 23);
 
-    /// Linear red, green and blue, row by row. Precondition: it is in memory, all of it.
+    /// Linear red, green and blue, row by row. Precondition: all of it is in memory.
     std::span<const float> rgb() const { return levels_.front().rgb; }
     int width() const { return levels_.front().width; }
     int height() const { return levels_.front().height; }
@@ -82,8 +82,8 @@ class Texture {
 
     struct Level {
         int width = 0, height = 0;
-        /// How many of its texels the texture covers: all, but for the ends of the last row and
-        /// column where those of a file were put together by twos.
+        /// How many of its texels the texture covers: all, except the ends of the last row and
+        /// column where pixels of a file were averaged in pairs.
         double columns = 0, rows = 0;
         std::vector<float> rgb;  // row-major, top row first; empty: in the file
         int halvings = 0;        // of those in the file
@@ -96,14 +96,14 @@ class Texture {
     };
     static Footprint footprint(const Level& level, double u, double v, const TextureLookup& lookup);
     Rgb sample(const Level& level, double u, double v, const TextureLookup& lookup) const;
-    /// Calls `look_up(level, u, v, lookup, share)` for all that a look-up over a parallelogram is
-    /// the sum of, each times its share.
+    /// Calls `look_up(level, u, v, lookup, weight)` for the terms whose weighted sum is a look-up
+    /// over a parallelogram.
     template <class LookUp>
     void visit(double u, double v, const TextureLookup& lookup, const TextureSpread& spread,
                const LookUp& look_up) const;
     double decoded(float encoded) const;
     /// Texels of a level that is in the file, `columns` times `rows` from (x, y) on: means over the
-    /// pixels that they stand for.
+    /// pixels that they represent.
     void texels_of_file(const Level& level, int x, int y, int columns, int rows,
                         std::span<Rgb> texels) const;
     double alpha_of_file(std::size_t place) const;
@@ -119,11 +119,11 @@ class Texture {
     bool is_encoded_ = false, has_alpha_in_file_ = false;
 };
 
-/// The derivatives of a number by the texels of a texture, from those by what look-ups find: the
-/// transpose of Texture::sample. For one thread.
+/// Accumulates the derivatives of a number by the texels of a texture from those by the results of
+/// look-ups: the transpose of Texture::sample. For one thread.
 class TextureGradient {
   public:
-    /// `texture` must outlive it and be in memory, all of it.
+    /// `texture` must outlive it and be completely in memory.
     explicit TextureGradient(const Texture& texture);
 
     const Texture& texture() const { return *texture_; }

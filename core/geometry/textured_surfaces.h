@@ -8,22 +8,21 @@ namespace uw {
 
 class TextureGradient;  // core/geometry/texture.h
 
-/// Surfaces of which some have textures. What is hit is shaded at a point; who knows that a hit
-/// stands for more than that has its textures taken over all of it.
+/// Surfaces of which some have textures. A hit is shaded at a point; a caller that knows its
+/// footprint can have the textures filtered over it.
 class TexturedSurfaces {
   public:
     virtual ~TexturedSurfaces() = default;
 
     virtual bool has_textures() const = 0;
-    /// Whether a hit of these surfaces is where one of them has a texture that shows in its
-    /// reflectance or its normal.
+    /// Whether a hit is on a surface whose texture affects its reflectance or its normal.
     virtual bool is_textured(const SurfaceHit& hit) const = 0;
-    /// Replaces what textures give to a hit of these surfaces, its reflectance and shading normal,
-    /// by their means over `spread`. Where that covers less than a texel nothing changes, and
-    /// neither does what Surfaces::material says.
+    /// Replaces the reflectance and shading normal of a hit, where they come from textures, by
+    /// their means over `spread`. If that covers less than a texel nothing changes; the result of
+    /// Surfaces::material never does.
     virtual void filter_textures(const SurfaceSpread& spread, SurfaceHit& hit) const = 0;
-    /// Hands the derivatives of a number by the reflectance of a hit, by band, back to the texels
-    /// that it was taken from, if they are those of the gradient's texture.
+    /// Propagates the derivatives of a number by the reflectance of a hit, by band, back to the
+    /// texels from which it was computed, if they are those of the gradient's texture.
     virtual void add_to_texture(const SurfaceHit& hit, std::span<const double> by_reflectance,
                                 TextureGradient& gradient) const = 0;
 };

@@ -9,7 +9,7 @@ namespace uw {
 
 namespace {
 
-// How far below the surface reflected rays begin: more than where they meet it is known to.
+// How far below the surface reflected rays begin [m]: more than the error of the crossing.
 constexpr double k_below = 1e-6;
 
 }  // namespace

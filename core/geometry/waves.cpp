@@ -117,7 +117,7 @@ class WaterWaves::Shape {
 
     virtual WavePoint at(double u, double v) const = 0;
     virtual WaveStatistics statistics() const = 0;
-    /// What a part of the surface does not exceed.
+    /// Bounds on a part of the surface.
     struct Bounds {
         double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
         double steepest = 0;    // of the slope
@@ -130,15 +130,15 @@ class WaterWaves::Shape {
             max_curved = std::max(max_curved, other.max_curved);
         }
     };
-    /// What lies before a ray [m].
-    struct Stretch {
-        double clear = 0;                // so far it stays below the surface for sure
-        double end = 0;                  // from there to here,
-        const Bounds* bounds = nullptr;  // these hold
+    /// What is known of the surface ahead of a ray [m].
+    struct Lookahead {
+        double clear = 0;                // up to here the ray is known to stay below the surface
+        double end = 0;                  // from there to here
+        const Bounds* bounds = nullptr;  // these bounds are valid
     };
     /// `is_below`: the ray begins below the surface; else nothing is clear.
-    virtual Stretch stretch(const Point3& /*from*/, const Vector3& /*direction*/,
-                            bool /*is_below*/) const {
+    virtual Lookahead look_ahead(const Point3& /*from*/, const Vector3& /*direction*/,
+                                 bool /*is_below*/) const {
         return {0, std::numeric_limits<double>::infinity(), &bounds};
     }
 
@@ -155,7 +155,7 @@ class SineWaves : public WaterWaves::Shape {
         double highest = 0, steepest = 0, curvature = 0, motion = 0, motion_curvature = 0;
         for (const SineWaveDesc& desc : descs) {
             const double k = k_full_turn / desc.wavelength, angle = desc.direction * k_degree;
-            // Whole turns are left out while numbers are small.
+            // Reduced to one turn before it is added, to keep precision.
             const double turned = std::fmod(wave_frequency(k, depth) * time, k_full_turn);
             waves_.push_back({desc.amplitude, desc.steepness * desc.amplitude, k, std::cos(angle),
                               std::sin(angle), desc.phase * k_degree - turned});
@@ -221,10 +221,10 @@ class SineWaves : public WaterWaves::Shape {
         void add(const Wave& wave, double sine, double cosine) {
             u -= wave.to_and_fro * wave.cos * sine;
             v -= wave.to_and_fro * wave.sin * sine;
-            const double stretch = wave.to_and_fro * wave.k * cosine;
-            uu -= stretch * wave.cos * wave.cos;
-            uv -= stretch * wave.cos * wave.sin;
-            vv -= stretch * wave.sin * wave.sin;
+            const double compression = wave.to_and_fro * wave.k * cosine;
+            uu -= compression * wave.cos * wave.cos;
+            uv -= compression * wave.cos * wave.sin;
+            vv -= compression * wave.sin * wave.sin;
         }
     };
 
@@ -236,8 +236,8 @@ class SineWaves : public WaterWaves::Shape {
         }
         return motion;
     }
-    // Newton's method, with halved steps where a whole one would not help. What is to vanish is the
-    // gradient of a strictly convex function, since the water does not fold: it always gets there.
+    // Damped Newton's method: steps are halved until they help. The root is that of the gradient of
+    // a strictly convex function, as the water does not fold, so that the method always converges.
     void find_calm_place(double u, double v, double& a, double& b) const {
         constexpr int k_max_steps = 100;
         const double accuracy = 1e-14 * (1 + std::abs(u) + std::abs(v));
@@ -248,14 +248,14 @@ class SineWaves : public WaterWaves::Shape {
             const double step_a = (motion.vv * off_u - motion.uv * off_v) / determinant;
             const double step_b = (motion.uu * off_v - motion.uv * off_u) / determinant;
             const double before = std::hypot(off_u, off_v);
-            double share = 1;
+            double damping = 1;
             for (;;) {
-                const double to_a = a - share * step_a, to_b = b - share * step_b;
+                const double to_a = a - damping * step_a, to_b = b - damping * step_b;
                 const Motion there = motion_at(to_a, to_b);
                 const double to_u = to_a + there.u - u, to_v = to_b + there.v - v;
                 const bool helps = std::hypot(to_u, to_v) < before;
-                if (!helps && share > 1e-6) {
-                    share *= 0.5;
+                if (!helps && damping > 1e-6) {
+                    damping *= 0.5;
                     continue;
                 }
                 if (!helps) return;  // it is as near as rounding permits
@@ -308,15 +308,15 @@ struct HeightLattice {
         return point;
     }
 
-    /// As Shape::stretch: block by block, as long as the ray stays below all of each.
-    WaterWaves::Shape::Stretch stretch(double u, double v, double z, const Vector3& direction,
-                                       bool is_below) const {
+    /// As Shape::look_ahead: block by block, as long as the ray stays below all of each.
+    WaterWaves::Shape::Lookahead look_ahead(double u, double v, double z, const Vector3& direction,
+                                            bool is_below) const {
         constexpr int k_max_blocks = 256;
         constexpr double k_never = std::numeric_limits<double>::infinity();
         const double blocks_per_metre = 1 / (block * step);
         // Along one axis: the block, and where the ray leaves it.
         struct Axis {
-            double index, to_next, per_block, way;
+            double index, to_next, per_block, sign;
             int count;
 
             Axis(double at, double rate, int blocks)
@@ -325,10 +325,10 @@ struct HeightLattice {
                           : rate < 0 ? (index - at) / rate
                                      : k_never),
                   per_block(rate != 0 ? 1 / std::abs(rate) : k_never),
-                  way(rate > 0 ? 1 : -1),
+                  sign(rate > 0 ? 1 : -1),
                   count(blocks) {}
             void advance() {
-                index += way;
+                index += sign;
                 to_next += per_block;
             }
             int wrapped() const {
@@ -461,8 +461,9 @@ class RandomSea : public WaterWaves::Shape {
     }
 
     WavePoint at(double u, double v) const override { return lattice_.at(u, v); }
-    Stretch stretch(const Point3& from, const Vector3& direction, bool is_below) const override {
-        return lattice_.stretch(from.x, from.y, from.z, direction, is_below);
+    Lookahead look_ahead(const Point3& from, const Vector3& direction,
+                         bool is_below) const override {
+        return lattice_.look_ahead(from.x, from.y, from.z, direction, is_below);
     }
 
     WaveStatistics statistics() const override {
@@ -479,7 +480,7 @@ class RandomSea : public WaterWaves::Shape {
     }
 
   private:
-    // The waves of half the resolution's frequency would have no slopes, and are left out.
+    // Waves at the Nyquist frequency would have no slopes, and are left out.
     int last() const { return count_ / 2 - 1; }
     double amplitude(int i, int j) const { return amplitudes_(i + last(), j + last()); }
 
@@ -511,7 +512,7 @@ class RandomSea : public WaterWaves::Shape {
         });
     }
 
-    // Of the wave i, j at this moment: A e^{i (phase - omega t)}.
+    // The complex amplitude of the wave i, j at this moment: A e^{i (phase - omega t)}.
     std::complex<double> wave(int i, int j, std::uint64_t seed, const std::optional<double>& depth,
                               double time) const {
         const auto bits = [](int n) {
@@ -557,7 +558,7 @@ class RandomSea : public WaterWaves::Shape {
     }
     int signed_index(int row) const { return row <= count_ / 2 ? row : row - count_; }
 
-    /// From half of a square spectrum to real values, in place of its own.
+    /// The in-place transform from half of a square spectrum to real values.
     class Transform {
       public:
         explicit Transform(int count)
@@ -629,13 +630,14 @@ class ImageHeights : public WaterWaves::Shape {
         bounds = lattice_.bound();
     }
 
-    // Pixels are where their centres are.
+    // Heights are those at the centres of pixels.
     WavePoint at(double u, double v) const override {
         return lattice_.at(u - 0.5 * step_, v - 0.5 * step_);
     }
-    Stretch stretch(const Point3& from, const Vector3& direction, bool is_below) const override {
-        return lattice_.stretch(from.x - 0.5 * step_, from.y - 0.5 * step_, from.z, direction,
-                                is_below);
+    Lookahead look_ahead(const Point3& from, const Vector3& direction,
+                         bool is_below) const override {
+        return lattice_.look_ahead(from.x - 0.5 * step_, from.y - 0.5 * step_, from.z, direction,
+                                   is_below);
     }
 
     WaveStatistics statistics() const override {
@@ -680,11 +682,11 @@ class ImageHeights : public WaterWaves::Shape {
 
 namespace {
 
-// A ray comes near a surface in steps that are the shorter the steeper it may be: some twenty times
-// as many as this, at most. Water breaks at a slope of 0.6.
+// A ray approaches a surface in steps that get shorter with its greatest slope: at most some twenty
+// times this number of steps. Water breaks at a slope of 0.6.
 constexpr double k_steepest = 30;
 
-const char* mend_of_slopes(const WavesDesc& desc) {
+const char* hint_for_slopes(const WavesDesc& desc) {
     if (std::holds_alternative<HeightImageDesc>(desc.shape))
         return "give the image a greater width, or lower heights in metres";
     if (std::holds_alternative<WaveSpectrumDesc>(desc.shape))
@@ -709,7 +711,7 @@ WaterWaves::WaterWaves(const WavesDesc& desc, double time) {
     if (!(steepest() <= k_steepest))
         throw InputError(
             fmt::format("{}: its slopes are up to {:.3g}, and must not be above {}; {}", desc.where,
-                        steepest(), k_steepest, mend_of_slopes(desc)));
+                        steepest(), k_steepest, hint_for_slopes(desc)));
 }
 
 WavePoint WaterWaves::at(double u, double v) const {
@@ -766,7 +768,7 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
     if (!(std::abs(direction.z) + all.steepest * level > 0))
         return std::nullopt;  // along calm water, in it
     Gap gap = gap_at(s);
-    // One that begins on the surface is on the side to which it goes.
+    // A ray that begins on the surface counts as being on the side towards which it travels.
     if (gap.value < 0 || (gap.value == 0 && gap.slope < 0)) {
         side = -1;
         gap = {-gap.value, -gap.slope};
@@ -774,7 +776,8 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
     double bounded = s, max_slope = 0, max_curvature = 0;  // up to there, of the gap
     while (s <= end) {
         if (s >= bounded) {
-            const Shape::Stretch ahead = shape.stretch(origin + s * direction, direction, side < 0);
+            const Shape::Lookahead ahead =
+                shape.look_ahead(origin + s * direction, direction, side < 0);
             bounded = s + ahead.end + k_min_step;
             max_slope = std::abs(direction.z) + ahead.bounds->steepest * level;
             max_curvature = ahead.bounds->max_curved * level * level;
@@ -785,7 +788,7 @@ std::optional<double> WaterWaves::intersect(const Point3& origin, const Vector3&
                 if (gap.value <= 0) return s;  // by rounding
             }
         }
-        // Neither its slope nor its curvature can close the gap before so far.
+        // The bounds on slope and curvature both give a distance before which the gap cannot close.
         const double root = std::sqrt(gap.slope * gap.slope + 2 * max_curvature * gap.value);
         const double by_curvature =
             gap.slope < 0 ? 2 * gap.value / (root - gap.slope)

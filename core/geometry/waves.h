@@ -34,12 +34,12 @@ double wave_group_velocity(double wave_number, const std::optional<double>& dept
 /// ln(z / 10 m) times that at 10 m, with the drag coefficient C = 0.0013.
 double wave_spectrum(const WaveSpectrumDesc& desc, double angular_frequency);
 
-/// By how much waves in water of finite depth have less of it (the TMA spectrum, Bouws et al. 1985;
+/// The factor by which a finite depth reduces the spectrum (the TMA spectrum, Bouws et al. 1985;
 /// Kitaigorodskii et al. 1975): tanh^2 kd / (1 + 2 kd / sinh 2 kd).
 double shoaling_factor(double wave_number, double depth);
 
-/// Share of the energy per angle [1/rad] at `angle` from the wind [rad]: cos^{2s}(angle / 2) over
-/// its integral (Longuet-Higgins, Cartwright and Smith 1963).
+/// The fraction of the energy per angle [1/rad] at `angle` from the wind [rad]: cos^{2s}(angle / 2)
+/// over its integral (Longuet-Higgins, Cartwright and Smith 1963).
 double wave_spreading(double angle, double s);
 
 /// Variances of the slope of a sea's surface, dimensionless.
@@ -50,12 +50,12 @@ struct SlopeVariance {
     double total() const { return along + across; }
 };
 
-/// Of a clean sea, as measured from the sun's glitter (Cox and Munk 1954), by the wind 12.5 m above
-/// the water [m/s]: 0.00316 U along it and 0.003 + 0.00192 U across. Their fit to both together is
-/// 0.003 + 0.00512 U.
+/// The slope variances of a clean sea, as measured from the sun's glitter (Cox and Munk 1954), by
+/// the wind 12.5 m above the water [m/s]: 0.00316 U along it and 0.003 + 0.00192 U across. Their
+/// fit to both together is 0.003 + 0.00512 U.
 SlopeVariance cox_munk_slopes(double wind);
 
-/// A place of the surface.
+/// A point of the surface.
 struct WavePoint {
     double height = 0;                ///< above the plane [m]
     double slope_u = 0, slope_v = 0;  ///< its derivatives
@@ -64,7 +64,7 @@ struct WavePoint {
     Vector3 normal() const { return glm::normalize(Vector3{-slope_u, -slope_v, 1}); }
 };
 
-/// What a surface is like as a whole, by its components; of a height image by its pixels.
+/// Statistics of a whole surface, by its components, or by the pixels of a height image.
 struct WaveStatistics {
     double height_variance = 0;  ///< m_0 [m^2]
     SlopeVariance slopes;        ///< along u and v
@@ -98,10 +98,10 @@ class WaterWaves {
 
     WavePoint at(double u, double v) const;
 
-    /// Between these lie all heights [m]; not necessarily the least and the greatest.
+    /// Bounds on all heights [m]; not necessarily tight.
     double lowest() const;
     double highest() const;
-    /// No slope is greater, in any direction; not necessarily the greatest.
+    /// An upper bound on all slopes, in any direction; not necessarily tight.
     double steepest() const;
 
     /// Distance along a ray [m] at which it first crosses the surface, from either side, to 1e-9 m
@@ -119,8 +119,8 @@ class WaterWaves {
     std::shared_ptr<const Shape> shape_;
 };
 
-/// One line that says how much of the slopes which Cox and Munk found at this wind are among the
-/// waves, and between which wavelengths these lie.
+/// One line that states which fraction of the slope variance that Cox and Munk measured at this
+/// wind the waves contain, and the range of their wavelengths.
 std::string compare_with_cox_munk(const WaveSpectrumDesc& desc, const WaterWaves& waves);
 
 }  // namespace uw

@@ -81,7 +81,7 @@ PositionSpline::PositionSpline(const std::vector<double>& knots, const std::vect
 
 Point3 PositionSpline::at(const std::vector<double>& knots, double u) const {
     const KnotSpan span = span_of(knots, u);
-    const double b = span.share, a = 1 - b;
+    const double b = span.fraction, a = 1 - b;
     const Vector3 bent =
         (a * a * a - a) * bends_[span.first] + (b * b * b - b) * bends_[span.first + 1];
     const Point3 straight =
@@ -91,7 +91,7 @@ Point3 PositionSpline::at(const std::vector<double>& knots, double u) const {
 
 Vector3 PositionSpline::velocity(const std::vector<double>& knots, double u) const {
     const KnotSpan span = span_of(knots, u);
-    const double b = span.share, a = 1 - b;
+    const double b = span.fraction, a = 1 - b;
     const Vector3 bent =
         (3 * b * b - 1) * bends_[span.first + 1] - (3 * a * a - 1) * bends_[span.first];
     return (points_[span.first + 1] - points_[span.first]) / span.width + span.width / 6 * bent;
@@ -134,7 +134,7 @@ Rotation RotationSpline::at(const std::vector<double>& knots, double u) const {
     const Vector3 second = rotation_vector(rotation_by(first).inverse() * a.inverse() * b *
                                            rotation_by(third).inverse());
     // The cumulative Bernstein polynomials of degree 3.
-    const double t = span.share, left = 1 - t;
+    const double t = span.fraction, left = 1 - t;
     return normalised(a * rotation_by(first * (1 - left * left * left)) *
                       rotation_by(second * (t * t * (3 - 2 * t))) *
                       rotation_by(third * (t * t * t)));
@@ -233,7 +233,7 @@ double Trajectory::place_at_length(double length) const {
     const double begin = knots_[span.first];
     const double rest = length - lengths_[span.first];
     double low = begin, high = knots_[span.first + 1];
-    double u = begin + span.share * (high - low);
+    double u = begin + span.fraction * (high - low);
     constexpr int k_max_steps = 60;  // of bisection alone
     for (int step = 0; step < k_max_steps; ++step) {
         const double excess = length_between(begin, u) - rest;
@@ -251,14 +251,14 @@ Pose Trajectory::at(double time) const {
     if (!lengths_.empty()) {
         const KnotSpan span = span_of(times_, time);
         u = place_at_length(lengths_[span.first] +
-                            span.share * (lengths_[span.first + 1] - lengths_[span.first]));
+                            span.fraction * (lengths_[span.first + 1] - lengths_[span.first]));
     }
     if (positions_) return {positions_->at(knots_, u), rotations_->at(knots_, u)};
     const KnotSpan span = span_of(knots_, u);
     const Pose& a = poses_[span.first];
     const Pose& b = poses_[span.first + 1];
-    return {a.position + span.share * (b.position - a.position),
-            turned(a.rotation, b.rotation, span.share)};
+    return {a.position + span.fraction * (b.position - a.position),
+            turned(a.rotation, b.rotation, span.fraction)};
 }
 
 Pose Trajectory::at_or_beyond(double time) const {

@@ -64,7 +64,7 @@ struct TimedPose {
 struct KnotSpan {
     std::size_t first = 0;  // the knot before; of the last place, that before the last knot
     double width = 0;       // between the knots
-    double share = 0;       // of the way to the next knot, 0 to 1
+    double fraction = 0;    // of the distance to the next knot, 0 to 1
 };
 
 /// The span of `knots` (strictly ascending, at least two) in which `at` lies; places outside are
