@@ -13,9 +13,9 @@
 
 namespace uw {
 
-ConfigValue require_value(const ConfigValue& map, std::string_view key, std::string_view mend) {
+ConfigValue require_value(const ConfigValue& map, std::string_view key, std::string_view hint) {
     const ConfigNode* const node = map.node().find(key);
-    if (node == nullptr) map.fail(fmt::format("'{}' is missing; {}", key, mend));
+    if (node == nullptr) map.fail(fmt::format("'{}' is missing; {}", key, hint));
     const std::string path =
         map.path().empty() ? std::string(key) : fmt::format("{}.{}", map.path(), key);
     return {*node, path};

@@ -48,11 +48,11 @@ struct Calibration {
 inline constexpr double k_half_pixel = 0.5;
 
 /// The numbers of a matrix: {rows, cols, data: [...]}, or a plain list.
-std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_view mend);
+std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_view hint);
 
 /// fx, fy, cx and cy of a file in which the centre of the first pixel is at (0, 0).
 IntrinsicsDesc intrinsics_from_zero(std::span<const ConfigValue> fx_fy_cx_cy,
-                                    std::string_view mend);
+                                    std::string_view hint);
 
 /// A lens of OpenCV's, k1 k2 p1 p2 k3 k4 k5 k6, of which the last may be missing; and its fisheye,
 /// k1 k2 k3 k4.
@@ -97,7 +97,7 @@ std::string write_scene_camera(const CameraDesc& camera);
 
 /// The value of a key, in a document that may have keys which are not read. Throws InputError if it
 /// is missing.
-ConfigValue require_value(const ConfigValue& map, std::string_view key, std::string_view mend);
+ConfigValue require_value(const ConfigValue& map, std::string_view key, std::string_view hint);
 
 /// "[1, 2.5, 3]", at full precision.
 std::string number_list(std::span<const double> numbers);

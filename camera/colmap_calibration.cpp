@@ -102,10 +102,10 @@ void read_colmap_model(const ConfigValue& name, std::span<const ConfigValue> par
     camera.distortion = {};
     if (model.fisheye) camera.distortion.model = DistortionDesc::Model::fisheye;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const std::string mend = fmt::format("give {} (of {})", names[i], model.parameters);
+        const std::string hint = fmt::format("give {} (of {})", names[i], model.parameters);
         const bool focal = names[i][0] == 'f';
         *parameter_of(names[i], camera) =
-            focal ? parameters[i].positive(mend) : parameters[i].number(mend);
+            focal ? parameters[i].positive(hint) : parameters[i].number(hint);
     }
     if (names.front() == "f") camera.intrinsics.fy = camera.intrinsics.fx;
 }
@@ -123,11 +123,11 @@ void read_port_model(const ConfigValue& name, const ConfigValue& at,
                             is_dome ? "DOMEPORT" : "FLATPORT", k_port_parameters, names,
                             parameters.size()));
     }
-    const std::string mend = fmt::format("give {}, in metres", names);
-    const Vector3 first(parameters[0].number(mend), parameters[1].number(mend),
-                        parameters[2].number(mend));
+    const std::string hint = fmt::format("give {}, in metres", names);
+    const Vector3 first(parameters[0].number(hint), parameters[1].number(hint),
+                        parameters[2].number(hint));
     const auto set_glass = [&](auto& port) {
-        port.thickness = parameters[4].non_negative(mend);
+        port.thickness = parameters[4].non_negative(hint);
         port.n_air = read_refractive_index(parameters[5]);
         port.n_glass = read_refractive_index(parameters[6]);
         port.n_water = read_refractive_index(parameters[7]);
@@ -135,7 +135,7 @@ void read_port_model(const ConfigValue& name, const ConfigValue& at,
     if (is_dome) {
         DomePortDesc port;
         port.center = at_origin_plus(first);
-        port.radius = parameters[3].positive(mend);
+        port.radius = parameters[3].positive(hint);
         set_glass(port);
         check_dome(at, port);
         camera.port = port;
@@ -149,7 +149,7 @@ void read_port_model(const ConfigValue& name, const ConfigValue& at,
     }
     port.normal = first / length;
     check_port_normal(parameters[0], port.normal);
-    port.distance = parameters[3].non_negative(mend);
+    port.distance = parameters[3].non_negative(hint);
     set_glass(port);
     camera.port = port;
 }
@@ -254,9 +254,9 @@ bool is_model(std::string_view text) {
 }
 
 Calibration read_line(const Line& line) {
-    constexpr auto k_mend = "write ID MODEL WIDTH HEIGHT PARAMS...";
+    constexpr auto k_hint = "write ID MODEL WIDTH HEIGHT PARAMS...";
     if (line.tokens.size() < 5 || line.tokens.size() > k_max_tokens)
-        line.value(0, "").fail(fmt::format("is not a COLMAP camera; {}", k_mend));
+        line.value(0, "").fail(fmt::format("is not a COLMAP camera; {}", k_hint));
     Calibration result;
     result.format = CalibrationFormat::colmap;
     result.camera = line.tokens[0].scalar;
@@ -347,14 +347,14 @@ bool looks_like_calibmar(const ConfigNode& root) {
 }
 
 Calibration read_calibmar(const ConfigValue& root) {
-    constexpr auto k_mend = "give model, parameters, width and height as Calibmar writes them";
+    constexpr auto k_hint = "give model, parameters, width and height as Calibmar writes them";
     Calibration result;
     result.format = CalibrationFormat::calibmar;
-    const ConfigValue model = require_value(root, "model", k_mend);
-    const ConfigValue parameters = require_value(root, "parameters", k_mend);
-    read_colmap_model(model, parameters.list(k_mend), result.desc);
-    const ConfigValue width = require_value(root, "width", k_mend);
-    read_resolution(width, width, require_value(root, "height", k_mend), result.desc);
+    const ConfigValue model = require_value(root, "model", k_hint);
+    const ConfigValue parameters = require_value(root, "parameters", k_hint);
+    read_colmap_model(model, parameters.list(k_hint), result.desc);
+    const ConfigValue width = require_value(root, "width", k_hint);
+    read_resolution(width, width, require_value(root, "height", k_hint), result.desc);
     result.model = model.node().scalar;
     const ConfigNode* const port = root.node().find("non_svp_model");
     if (port == nullptr || port->scalar == "NONE") return result;

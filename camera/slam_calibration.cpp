@@ -17,17 +17,17 @@ namespace uw {
 
 namespace {
 
-constexpr auto k_four_mend = "give the four numbers that go with the distortion model";
+constexpr auto k_four_hint = "give the four numbers that go with the distortion model";
 
-std::vector<double> numbers_in(std::span<const ConfigValue> values, std::string_view mend) {
+std::vector<double> numbers_in(std::span<const ConfigValue> values, std::string_view hint) {
     std::vector<double> numbers;
-    for (const ConfigValue& value : values) numbers.push_back(value.number(mend));
+    for (const ConfigValue& value : values) numbers.push_back(value.number(hint));
     return numbers;
 }
 
 /// The numbers of a list of exactly `count`.
-std::vector<double> numbers_of(const ConfigValue& value, std::size_t count, std::string_view mend) {
-    return numbers_in(value.list_of(count, mend), mend);
+std::vector<double> numbers_of(const ConfigValue& value, std::size_t count, std::string_view hint) {
+    return numbers_in(value.list_of(count, hint), hint);
 }
 
 /// Refuses a model of lenses that is not there, and says what is.
@@ -61,9 +61,9 @@ Calibration read_euroc_sensor(const ConfigValue& root) {
     result.format = CalibrationFormat::euroc;
     const ConfigValue projection = require_value(root, "camera_model", "give pinhole");
     if (projection.text("give pinhole") != "pinhole") refuse_model(projection, "pinhole");
-    constexpr auto k_mend = "give [fu, fv, cu, cv] in pixels";
-    const auto numbers = require_value(root, "intrinsics", k_mend).list_of(4, k_mend);
-    result.desc.intrinsics = intrinsics_from_zero(numbers, k_mend);
+    constexpr auto k_hint = "give [fu, fv, cu, cv] in pixels";
+    const auto numbers = require_value(root, "intrinsics", k_hint).list_of(4, k_hint);
+    result.desc.intrinsics = intrinsics_from_zero(numbers, k_hint);
     const ConfigValue resolution =
         require_value(root, "resolution", "give [width, height] in pixels");
     const auto sides = resolution.list_of(2, "give [width, height] in pixels");
@@ -80,7 +80,7 @@ Calibration read_euroc_sensor(const ConfigValue& root) {
     result.model = "pinhole, " + model.node().scalar;
     if (lens == Lens::none) return result;
     const auto d =
-        numbers_of(require_value(root, "distortion_coefficients", k_four_mend), 4, k_four_mend);
+        numbers_of(require_value(root, "distortion_coefficients", k_four_hint), 4, k_four_hint);
     result.desc.distortion = lens == Lens::equidistant ? fisheye_lens(d) : opencv_lens(d);
     return result;
 }
@@ -100,8 +100,8 @@ void read_okvis_lens(const ConfigValue& camera, Calibration& result) {
     const bool is_rational = name == "radialtangential8", is_fisheye = name == "equidistant";
     if (!is_rational && !is_fisheye && name != "radialtangential")
         refuse_model(model, k_okvis_models);
-    const ConfigValue list = require_value(camera, "distortion_coefficients", k_four_mend);
-    const auto d = numbers_of(list, is_rational ? 8 : 4, k_four_mend);
+    const ConfigValue list = require_value(camera, "distortion_coefficients", k_four_hint);
+    const auto d = numbers_of(list, is_rational ? 8 : 4, k_four_hint);
     result.desc.distortion = is_fisheye ? fisheye_lens(d) : opencv_lens(d);
 }
 
@@ -125,8 +125,8 @@ Calibration read_okvis(const ConfigValue& root, const std::string& camera) {
     result.camera = choose_camera(result.cameras, camera, root.location());
     const auto index = std::ranges::find(result.cameras, result.camera) - result.cameras.begin();
     const ConfigValue& chosen = cameras[static_cast<std::size_t>(index)];
-    const auto pair = [&](std::string_view key, std::string_view mend) {
-        return require_value(chosen, key, mend).list_of(2, mend);
+    const auto pair = [&](std::string_view key, std::string_view hint) {
+        return require_value(chosen, key, hint).list_of(2, hint);
     };
     constexpr auto k_focal = "give [fu, fv] in pixels", k_centre = "give [cu, cv] in pixels";
     const auto f = pair("focal_length", k_focal), c = pair("principal_point", k_centre);
@@ -220,12 +220,12 @@ Calibration read_orb_slam(const ConfigValue& root, const std::string& camera) {
         read_unrectified(root, result.camera, result);
         return result;
     }
-    constexpr auto k_mend = "give fx, fy, cx and cy in pixels";
+    constexpr auto k_hint = "give fx, fy, cx and cy in pixels";
     const auto value = [&](std::string_view name) {
-        return require_value(root, key_of(result.camera, name), k_mend);
+        return require_value(root, key_of(result.camera, name), k_hint);
     };
     result.desc.intrinsics = intrinsics_from_zero(
-        std::array{value("fx"), value("fy"), value("cx"), value("cy")}, k_mend);
+        std::array{value("fx"), value("fy"), value("cx"), value("cy")}, k_hint);
     read_orb_lens(root, result.camera, result);
     for (const char* const key : {"Camera.newWidth", "Camera.newHeight", "Camera.imageScale"})
         if (const ConfigNode* const node = root.node().find(key); node && node->scalar != "1.0")
@@ -258,10 +258,10 @@ Calibration read_camodocal(const ConfigValue& root) {
     const ConfigValue projection =
         require_value(root, "projection_parameters", "give the four of the projection");
     const auto values = [&](const ConfigValue& map, std::array<std::string_view, 4> names) {
-        constexpr auto k_mend = "give it as CamOdoCal writes it";
+        constexpr auto k_hint = "give it as CamOdoCal writes it";
         return std::array{
-            require_value(map, names[0], k_mend), require_value(map, names[1], k_mend),
-            require_value(map, names[2], k_mend), require_value(map, names[3], k_mend)};
+            require_value(map, names[0], k_hint), require_value(map, names[1], k_hint),
+            require_value(map, names[2], k_hint), require_value(map, names[3], k_hint)};
     };
     const std::array<std::string_view, 4> k_fisheye{"mu", "mv", "u0", "v0"};
     const std::array<std::string_view, 4> k_pinhole{"fx", "fy", "cx", "cy"};
@@ -270,9 +270,9 @@ Calibration read_camodocal(const ConfigValue& root) {
         intrinsics_from_zero(values(projection, is_fisheye ? k_fisheye : k_pinhole), k_pixels);
     // r = theta + k2 theta^3 + k3 theta^5 + k4 theta^7 + k5 theta^9: cv::fisheye's k1 to k4.
     const auto lens = is_fisheye ? values(projection, {"k2", "k3", "k4", "k5"})
-                                 : values(require_value(root, "distortion_parameters", k_four_mend),
+                                 : values(require_value(root, "distortion_parameters", k_four_hint),
                                           {"k1", "k2", "p1", "p2"});
-    const auto d = numbers_in(lens, k_four_mend);
+    const auto d = numbers_in(lens, k_four_hint);
     result.desc.distortion = is_fisheye ? fisheye_lens(d) : opencv_lens(d);
     return result;
 }

@@ -12,25 +12,25 @@ namespace uw {
 
 // What several formats have in common.
 
-std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_view mend) {
-    if (value.node().kind != ConfigNode::Kind::map) return value.list(mend);
-    const auto numbers = require_value(value, "data", mend).list(mend);
+std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_view hint) {
+    if (value.node().kind != ConfigNode::Kind::map) return value.list(hint);
+    const auto numbers = require_value(value, "data", hint).list(hint);
     const ConfigNode* const rows = value.node().find("rows");
     const ConfigNode* const cols = value.node().find("cols");
     if (rows == nullptr || cols == nullptr) return numbers;
     constexpr int k_most = 64;
-    const int count = ConfigValue(*rows, value.path() + ".rows").integer(0, k_most, mend) *
-                      ConfigValue(*cols, value.path() + ".cols").integer(0, k_most, mend);
+    const int count = ConfigValue(*rows, value.path() + ".rows").integer(0, k_most, hint) *
+                      ConfigValue(*cols, value.path() + ".cols").integer(0, k_most, hint);
     if (static_cast<std::size_t>(count) != numbers.size())
         value.fail(fmt::format("rows x cols is {}, but data has {} numbers; {}", count,
-                               numbers.size(), mend));
+                               numbers.size(), hint));
     return numbers;
 }
 
 IntrinsicsDesc intrinsics_from_zero(std::span<const ConfigValue> fx_fy_cx_cy,
-                                    std::string_view mend) {
-    return {fx_fy_cx_cy[0].positive(mend), fx_fy_cx_cy[1].positive(mend),
-            fx_fy_cx_cy[2].number(mend) + k_half_pixel, fx_fy_cx_cy[3].number(mend) + k_half_pixel};
+                                    std::string_view hint) {
+    return {fx_fy_cx_cy[0].positive(hint), fx_fy_cx_cy[1].positive(hint),
+            fx_fy_cx_cy[2].number(hint) + k_half_pixel, fx_fy_cx_cy[3].number(hint) + k_half_pixel};
 }
 
 DistortionDesc opencv_lens(std::span<const double> coefficients) {
@@ -76,28 +76,28 @@ const ConfigNode* find_any(const ConfigNode& map, Names names) {
 }
 
 /// The value of the first of several keys that is present.
-ConfigValue require_any(const ConfigValue& map, Names names, std::string_view mend) {
+ConfigValue require_any(const ConfigValue& map, Names names, std::string_view hint) {
     for (const std::string_view name : names)
         if (const ConfigNode* const node = map.node().find(name)) return {*node, std::string(name)};
-    return require_value(map, names.front(), mend);
+    return require_value(map, names.front(), hint);
 }
 
 void read_matrix(const ConfigValue& value, IntrinsicsDesc& intrinsics) {
-    constexpr auto k_mend = "give the nine numbers fx 0 cx 0 fy cy 0 0 1";
-    const auto m = matrix_numbers(value, k_mend);
+    constexpr auto k_hint = "give the nine numbers fx 0 cx 0 fy cy 0 0 1";
+    const auto m = matrix_numbers(value, k_hint);
     if (m.size() != 9)
-        value.fail(fmt::format("expected 9 numbers, found {}; {}", m.size(), k_mend));
-    if (m[0].number(k_mend) == 0 && m[4].number(k_mend) == 0)
+        value.fail(fmt::format("expected 9 numbers, found {}; {}", m.size(), k_hint));
+    if (m[0].number(k_hint) == 0 && m[4].number(k_hint) == 0)
         value.fail(
             "is that of a camera which is not calibrated, with a focal length of 0; calibrate "
             "it, or take the message of another");
     constexpr std::array<double, 9> k_fixed{-1, 0, -1, 0, -1, -1, 0, 0, 1};
     for (std::size_t i = 0; i < 9; ++i) {
-        if (k_fixed[i] >= 0 && m[i].number(k_mend) != k_fixed[i])
+        if (k_fixed[i] >= 0 && m[i].number(k_hint) != k_fixed[i])
             m[i].fail(fmt::format("must be {}, found {}: skewed pixels are not supported; {}",
-                                  k_fixed[i], m[i].number(k_mend), k_mend));
+                                  k_fixed[i], m[i].number(k_hint), k_hint));
     }
-    intrinsics = intrinsics_from_zero(std::array{m[0], m[4], m[2], m[5]}, k_mend);
+    intrinsics = intrinsics_from_zero(std::array{m[0], m[4], m[2], m[5]}, k_hint);
 }
 
 /// `unnamed` and `brown_conrady` have any number of coefficients; the former may be a fisheye.
@@ -130,23 +130,23 @@ Model read_model(const ConfigValue& root, Calibration& result) {
 }
 
 void read_coefficients(const ConfigValue& value, Model model, Calibration& result) {
-    constexpr auto k_mend = "give k1 k2 p1 p2 [k3 [k4 k5 k6]], or k1 k2 k3 k4 of a fisheye";
+    constexpr auto k_hint = "give k1 k2 p1 p2 [k3 [k4 k5 k6]], or k1 k2 k3 k4 of a fisheye";
     std::vector<double> d;
-    for (const ConfigValue& number : matrix_numbers(value, k_mend))
-        d.push_back(number.number(k_mend));
+    for (const ConfigValue& number : matrix_numbers(value, k_hint))
+        d.push_back(number.number(k_hint));
     const std::size_t count = d.size();
     const auto refuse = [&](std::string_view expected) {
-        value.fail(fmt::format("expected {} numbers, found {}; {}", expected, count, k_mend));
+        value.fail(fmt::format("expected {} numbers, found {}; {}", expected, count, k_hint));
     };
     // Programs write zeros for what a model does not have.
-    const auto refuse_beyond = [&](std::size_t last, std::string_view what, std::string_view mend) {
+    const auto refuse_beyond = [&](std::size_t last, std::string_view what, std::string_view hint) {
         for (std::size_t i = last; i < count; ++i)
             if (d[i] != 0)
                 value.fail(fmt::format("has {} ({}), which is not supported; {}",
                                        i >= 12  ? "a sensor tilt"
                                        : i >= 8 ? "a thin-prism coefficient"
                                                 : what,
-                                       d[i], mend));
+                                       d[i], hint));
     };
     constexpr std::size_t k_most = 14;
     if (count > k_most) refuse("0, 4, 5, 8, 12 or 14");
@@ -179,14 +179,14 @@ void read_coefficients(const ConfigValue& value, Model model, Calibration& resul
 /// pixels where several were binned, as PinholeCameraModel::fromCameraInfo of ROS's image_geometry
 /// does.
 void read_window(const ConfigValue& root, Calibration& result) {
-    constexpr auto k_mend = "give whole pixels, or 0 for none";
+    constexpr auto k_hint = "give whole pixels, or 0 for none";
     constexpr int k_max_binned = 1000;
     CameraDesc& camera = result.desc;
     const auto pixels = [&](const ConfigValue& map, std::string_view key, int most) {
         const ConfigNode* const node = map.node().find(key);
         const std::string path =
             map.path().empty() ? std::string(key) : fmt::format("{}.{}", map.path(), key);
-        return node == nullptr ? 0 : ConfigValue(*node, path).integer(0, most, k_mend);
+        return node == nullptr ? 0 : ConfigValue(*node, path).integer(0, most, k_hint);
     };
     int width = camera.width, height = camera.height;
     if (const ConfigNode* const node = root.node().find("roi")) {
@@ -312,7 +312,7 @@ std::string write_ros(const CameraDesc& camera) {
 
 namespace {
 
-constexpr auto k_intrinsics_mend = "give [fu, fv, pu, pv] in pixels";
+constexpr auto k_intrinsics_hint = "give [fu, fv, pu, pv] in pixels";
 
 void check_projection(const ConfigValue& value) {
     const std::string name = value.text("give the camera model, such as pinhole");
@@ -341,10 +341,10 @@ void read_lens(const ConfigValue& camera, Calibration& result) {
             "the distortion model fov is not supported; calibrate with radtan or equi instead");
     result.model = "pinhole, " + model.node().scalar;
     if (which == KalibrModel::none) return;
-    constexpr auto k_mend = "give the four numbers that go with the distortion model";
-    const auto numbers = require_value(camera, "distortion_coeffs", k_mend).list_of(4, k_mend);
+    constexpr auto k_hint = "give the four numbers that go with the distortion model";
+    const auto numbers = require_value(camera, "distortion_coeffs", k_hint).list_of(4, k_hint);
     std::array<double, 4> d{};
-    for (std::size_t i = 0; i < 4; ++i) d[i] = numbers[i].number(k_mend);
+    for (std::size_t i = 0; i < 4; ++i) d[i] = numbers[i].number(k_hint);
     result.desc.distortion = which == KalibrModel::equidistant ? fisheye_lens(d) : opencv_lens(d);
 }
 
@@ -367,8 +367,8 @@ Calibration read_kalibr(const ConfigValue& root, const std::string& camera) {
     read_lens(chosen, result);
 
     const auto numbers =
-        require_value(chosen, "intrinsics", k_intrinsics_mend).list_of(4, k_intrinsics_mend);
-    result.desc.intrinsics = intrinsics_from_zero(numbers, k_intrinsics_mend);
+        require_value(chosen, "intrinsics", k_intrinsics_hint).list_of(4, k_intrinsics_hint);
+    result.desc.intrinsics = intrinsics_from_zero(numbers, k_intrinsics_hint);
     const ConfigValue resolution =
         require_value(chosen, "resolution", "give [width, height] in pixels");
     const auto sides = resolution.list_of(2, "give [width, height] in pixels");

@@ -22,7 +22,7 @@ namespace uw {
 
 namespace {
 
-constexpr int k_max_bands = 2000;
+constexpr int k_max_listed_bands = 2000;
 
 [[noreturn]] void fail(const std::string& text, std::string_view what) {
     throw UsageError(fmt::format("--bands {}: {}", printable(text), what));
@@ -60,8 +60,8 @@ std::vector<double> parse_range(const std::vector<std::string_view>& parts,
     const double last = parse_wavelength(parts[1], text);
     const double count = std::floor((last - first) / step + 1e-9) + 1;
     if (count < 1) fail(text, "the last wavelength is less than the first; swap them");
-    if (count > k_max_bands)
-        fail(text, fmt::format("more than {} wavelengths; give a larger step", k_max_bands));
+    if (count > k_max_listed_bands)
+        fail(text, fmt::format("more than {} wavelengths; give a larger step", k_max_listed_bands));
     std::vector<double> bands;
     bands.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(first + i * step);
@@ -76,8 +76,8 @@ std::vector<double> parse_bands(const std::string& text) {
     std::vector<double> bands;
     for (const std::string_view part : split(text, ','))
         bands.push_back(parse_wavelength(part, text));
-    if (bands.size() > static_cast<std::size_t>(k_max_bands))
-        fail(text, fmt::format("more than {} wavelengths", k_max_bands));
+    if (bands.size() > static_cast<std::size_t>(k_max_listed_bands))
+        fail(text, fmt::format("more than {} wavelengths", k_max_listed_bands));
     std::vector<double> sorted = bands;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())

@@ -70,7 +70,7 @@ class PointResiduals final : public Observations {
     std::vector<FoundPose> found_poses(const FitResult& result) const;
 
     /// What the author of the table may have meant by it, where it looks odd: questions, each a
-    /// sentence with the mend. `options`: of the fit that came to `result`.
+    /// sentence with the hint. `options`: of the fit that came to `result`.
     std::vector<std::string> questions(const FitResult& result, const FitOptions& options) const;
 
     const std::vector<std::string>& images() const override { return seen_.images; }

@@ -346,8 +346,8 @@ py::object frames(const SceneObject& scene) {
 void bind_scene(py::module_& module) {
     module.def(
         "require_memory",
-        [](double bytes, const Text& what, const Text& mend) {
-            require_memory(bytes, what.value, mend.value);
+        [](double bytes, const Text& what, const Text& hint) {
+            require_memory(bytes, what.value, hint.value);
         },
         py::arg("bytes"), py::arg("what"), py::arg("mend"));
     py::class_<SceneObject>(module, "Scene")

@@ -39,7 +39,7 @@ class FitReport {
     std::vector<std::string> doubts_;
 };
 
-/// What a fit cannot tell, and what is nearly so, in sentences with the mend.
+/// What a fit cannot tell, and what is nearly so, in sentences with the hint.
 std::vector<std::string> doubts(const FitResult& result);
 
 }  // namespace uw

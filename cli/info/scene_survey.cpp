@@ -95,7 +95,7 @@ void warn_of_surfaces(const SceneSurvey& survey, std::vector<std::string>& warni
             100 * view.hidden, k_opaque_depth));
 }
 
-/// What makes volumes in view hard to see, and the mend.
+/// What makes volumes in view hard to see, and the hint.
 void warn_of_contrast(const SceneSurvey& survey, std::vector<std::string>& warnings) {
     if (!survey.contrast || survey.contrast->seen == 0) return;
     const DraftContrast& draft = *survey.contrast;

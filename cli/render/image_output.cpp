@@ -46,15 +46,15 @@ void warn_of_darkness(const PixelWindow& window, std::size_t empty, bool black,
 
 void warn_of_half(const HalfLoss& loss, const ExrOptions& options, const SayCallback& warn) {
     const char* const option = options.is_aces ? "--aces" : "--precision half";
-    const char* const mend = options.is_aces ? "scale the lamps' intensities, or leave out --aces"
+    const char* const hint = options.is_aces ? "scale the lamps' intensities, or leave out --aces"
                                              : "use --precision float";
     if (loss.too_large > 0)
         warn(fmt::format("{}: {} {} too large for half floats, and infinite in the file; {}",
                          option, counted(loss.too_large, "value"),
-                         loss.too_large == 1 ? "is" : "are", mend));
+                         loss.too_large == 1 ? "is" : "are", hint));
     if (loss.too_dark)
         warn(fmt::format("{}: the light is so weak that half floats round it visibly; {}", option,
-                         mend));
+                         hint));
 }
 
 // The light itself: an EXR, or R, G and B alone.

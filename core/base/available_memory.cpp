@@ -41,17 +41,17 @@ std::uint64_t bytes_of(std::string_view key, const fs::path& file) {
     return k_unknown;
 }
 
-/// What there is, and what of it is free.
-struct Share {
+/// How much memory there is, and how much of it is free [bytes].
+struct MemoryLimit {
     std::uint64_t all = k_unknown, left = k_unknown;
 
-    void limit_to(const Share& other) {
+    void limit_to(const MemoryLimit& other) {
         all = std::min(all, other.all);
         left = std::min(left, other.left);
     }
 };
 
-Share of_the_machine(const fs::path& root) {
+MemoryLimit of_the_machine(const fs::path& root) {
     const fs::path file = root / "proc/meminfo";
     const auto with_swap = [&](std::string_view memory, std::string_view swap) {
         const std::uint64_t bytes = bytes_of(memory, file), more = bytes_of(swap, file);
@@ -67,7 +67,7 @@ std::uint64_t number_in(const fs::path& file) {
     return in >> number ? number : k_unknown;
 }
 
-/// What the files of a version of control groups are called.
+/// The names of the files of a version of control groups.
 struct GroupFiles {
     const char *limit, *usage;
     std::array<std::string_view, 2> cached;  // entries of memory.stat
@@ -76,7 +76,7 @@ constexpr GroupFiles k_version_1{
     "memory.limit_in_bytes", "memory.usage_in_bytes", {"total_inactive_file", "total_active_file"}};
 constexpr GroupFiles k_version_2{"memory.max", "memory.current", {"inactive_file", "active_file"}};
 
-Share of_group(const fs::path& group, const GroupFiles& files) {
+MemoryLimit of_group(const fs::path& group, const GroupFiles& files) {
     const std::uint64_t limit = number_in(group / files.limit);
     if (limit == k_unknown) return {};
     const std::uint64_t used = number_in(group / files.usage);
@@ -87,12 +87,12 @@ Share of_group(const fs::path& group, const GroupFiles& files) {
     return {limit, less(limit, less(used == k_unknown ? 0 : used, cached))};
 }
 
-/// What its control groups leave the process: the one that /proc/self/cgroup names and those above
-/// it, or, as inside a container, what is mounted of them.
-Share of_groups(const fs::path& root) {
+/// The memory that the process's control groups leave it: the one that /proc/self/cgroup names and
+/// those above it, or, as inside a container, those that are mounted.
+MemoryLimit of_groups(const fs::path& root) {
     const fs::path mounted = root / "sys/fs/cgroup";
-    Share share = of_group(mounted, k_version_2);
-    share.limit_to(of_group(mounted / "memory", k_version_1));
+    MemoryLimit limit = of_group(mounted, k_version_2);
+    limit.limit_to(of_group(mounted / "memory", k_version_1));
     std::ifstream in(root / "proc/self/cgroup");
     for (std::string line; std::getline(in, line);) {
         // "0::/user.slice" of version 2, "6:memory:/user.slice" of version 1.
@@ -103,10 +103,10 @@ Share of_groups(const fs::path& root) {
         if (!is_second && ("," + controllers + ",").find(",memory,") == std::string::npos) continue;
         fs::path name = fs::path(line.substr(second + 1)).relative_path();
         for (; !name.empty(); name = name.parent_path())
-            share.limit_to(is_second ? of_group(mounted / name, k_version_2)
+            limit.limit_to(is_second ? of_group(mounted / name, k_version_2)
                                      : of_group(mounted / "memory" / name, k_version_1));
     }
-    return share;
+    return limit;
 }
 
 std::uint64_t left_of_address_space(const fs::path& root) {
@@ -131,7 +131,7 @@ std::uint64_t data_bytes(const fs::path& root) {
 }
 
 FreeMemory read_free_memory(const fs::path& root) {
-    Share shared = of_the_machine(root);
+    MemoryLimit shared = of_the_machine(root);
     shared.limit_to(of_groups(root));
     return {shared.left, std::min(left_of_address_space(root), left_of_data(root)), shared.all};
 }
@@ -164,22 +164,22 @@ const MemoryWait& MemoryWaitScope::of_this_thread() {
     return wait_of_thread != nullptr ? *wait_of_thread : by_itself;
 }
 
-void require_memory(double bytes, std::string_view what, std::string_view mend) {
+void require_memory(double bytes, std::string_view what, std::string_view hint) {
     const MemoryWait& wait = MemoryWaitScope::of_this_thread();
     const auto is_less = [&](std::uint64_t there) { return static_cast<double>(there) < bytes; };
     FreeMemory free = wait.read();
     if (!is_less(free.available())) return;
-    // Our own limit may be that of a moment of shortage.
+    // Our own limit may date from a moment of shortage.
     renew_memory_limit();
     free = wait.read();
-    // The first pauses are shorter than what anyone would notice.
+    // The first pauses are too short to be noticed.
     constexpr double k_first_pause = 0.01, k_longest_pause = 0.25, k_silent = 1;
     double waited = 0, pause = k_first_pause;
     bool has_told = false;
     for (; is_less(free.available()); free = wait.read()) {
         const std::string line =
             fmt::format("{} {:.3g} GB of memory, but only {:.3g} GB are free; {}", what,
-                        bytes * 1e-9, static_cast<double>(free.available()) * 1e-9, mend);
+                        bytes * 1e-9, static_cast<double>(free.available()) * 1e-9, hint);
         if (is_less(free.most)) throw InputError(line);
         if (is_less(free.own) || !(waited < wait.seconds)) throw OutOfMemory(line);
         if (wait.tell && waited >= k_silent && !std::exchange(has_told, true)) wait.tell(line);
@@ -191,14 +191,15 @@ void require_memory(double bytes, std::string_view what, std::string_view mend) 
 
 namespace {
 
-// What the kernel needs for the process beside its data: page tables, files that are being written.
-constexpr double k_share_of_kernel = 1.0 / 16;
+// The fraction that the kernel needs for the process beside its data: page tables, files that are
+// being written.
+constexpr double k_kernel_fraction = 1.0 / 16;
 
 /// The limit of data that this process has set itself.
 struct DataLimit {
     std::mutex mutex;
     bool is_set = false;
-    int lifted = 0;  // so many MemoryLimitLifted live
+    int lifted = 0;  // number of living MemoryLimitLifted
     rlim_t before = RLIM_INFINITY, ours = RLIM_INFINITY;
 
     static rlimit current() {
@@ -215,7 +216,7 @@ struct DataLimit {
         const FreeMemory free = read_free_memory();
         const std::uint64_t left = std::min(free.shared, left_of_address_space("/"));
         const double most =
-            static_cast<double>(data_bytes()) + (1 - k_share_of_kernel) * static_cast<double>(left);
+            static_cast<double>(data_bytes()) + (1 - k_kernel_fraction) * static_cast<double>(left);
         // More than that is no limit.
         constexpr double k_largest = 0x1p62;
         ours = most < k_largest ? std::min(before, static_cast<rlim_t>(most)) : before;

@@ -16,8 +16,8 @@ struct SampledCurve {
     double last() const { return x.back(); }
     bool covers(double at) const { return at >= first() && at <= last(); }
 
-    /// Linear interpolation; outside the samples the value at the nearer end is held; callers for
-    /// whom that is wrong must check `covers` first.
+    /// Linear interpolation; outside the samples it is constant; callers for whom that is wrong
+    /// must check `covers` first.
     double value(double at) const;
 };
 
@@ -30,7 +30,7 @@ struct EmbeddedTable {
 /// All tables compiled into the program, in the order of their file names.
 const std::vector<EmbeddedTable>& embedded_tables();
 
-/// How lines of comma-separated values are read, whatever is made of them.
+/// Functions that read lines of comma-separated values.
 
 /// Takes the next line, without blanks at its ends, from the beginning of `text`.
 std::string_view take_csv_line(std::string_view& text);
@@ -41,7 +41,7 @@ void skip_byte_order_mark(std::string_view& text);
 /// The cells of a line, without blanks around them; quoting is not supported.
 std::vector<std::string_view> csv_cells(std::string_view line);
 
-/// What a message may quote of a user's table: short and printable, so that it stays one line.
+/// A quotation from a user's table for messages: short and printable, so that it stays one line.
 std::string quoted_cell(std::string_view text);
 
 /// A text as a cell of a line: in quotes where it needs them.

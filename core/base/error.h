@@ -35,16 +35,16 @@ class Interrupted : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-/// The line for the user: what(), or what to do where memory could not be had.
+/// The line for the user: what(), or advice if memory could not be allocated.
 inline const char* line_of(const std::exception& error) {
     if (!dynamic_cast<const std::bad_alloc*>(&error)) return error.what();
     return "out of memory; render a smaller --size or --crop, fewer --layers or a --quality draft, "
            "or use smaller volumes, meshes and textures";
 }
 
-/// As long as it lives, what its thread does, and what it runs by parallel_for, ends with
-/// Interrupted once `stop` is set: at the next throw_if_stopped(). One within another replaces it
-/// for the time being.
+/// As long as it lives, the work of its thread, and of the threads that it runs by parallel_for,
+/// ends with Interrupted once `stop` is set, at the next throw_if_stopped(). A nested one replaces
+/// it temporarily.
 class StopScope {
   public:
     explicit StopScope(const std::atomic<bool>& stop) : StopScope(&stop) {}
@@ -63,9 +63,9 @@ class StopScope {
     const std::atomic<bool>* previous_;
 };
 
-/// Throws Interrupted where the calling thread's work is to stop. It costs some nanoseconds: work
-/// is to ask before each ray, path or step that it takes, and never to do more than some
-/// milliseconds' worth without asking. Not to be called from within Embree.
+/// Throws Interrupted if the calling thread's work is to stop. It costs some nanoseconds: call it
+/// before each ray, path or step, and at least every few milliseconds. Not to be called from within
+/// Embree.
 void throw_if_stopped();
 
 }  // namespace uw

@@ -4,8 +4,8 @@
 
 namespace uw {
 
-/// To be held while FFTW makes or destroys a plan: its planner, unlike its transforms, is not
-/// thread safe.
+/// A mutex to be held while FFTW makes or destroys a plan: its planner, unlike its transforms, is
+/// not thread safe.
 std::mutex& fourier_planner();
 
 }  // namespace uw

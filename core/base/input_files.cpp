@@ -197,7 +197,7 @@ struct Input {
     FileStamp stamp;
 };
 
-/// The inputs of the whole program: what one part of it reads no other part may replace.
+/// The inputs of the whole program: no part of it may replace a file that another part reads.
 struct Registry {
     std::mutex mutex;
     std::multimap<Identity, Input> inputs;
@@ -238,10 +238,12 @@ bool lies_within(const fs::path& folder, const fs::path& file) {
     const fs::path place = fs::weakly_canonical(file, error);
     const fs::path root = fs::weakly_canonical(folder, folder_error);
     if (error || folder_error || !lies_in(root, place)) return false;
-    fs::path way;
+    fs::path partial_path;
     for (const fs::path& part : file) {
-        way /= part;
-        if (fs::is_symlink(fs::symlink_status(way, error)) && !fs::exists(way, error)) return false;
+        partial_path /= part;
+        if (fs::is_symlink(fs::symlink_status(partial_path, error)) &&
+            !fs::exists(partial_path, error))
+            return false;
     }
     return true;
 }
@@ -394,7 +396,7 @@ bool is_input(const fs::path& file) {
 
 namespace {
 
-// Files are read in parts, each as long as all before.
+// Files are read in parts, each as long as all previous ones together.
 constexpr std::size_t k_first_part = std::size_t{1} << 18;
 
 /// A file open for reading. Opening a pipe does not wait for somebody to write to it: without a
@@ -432,7 +434,7 @@ struct OtherFormat {
     std::string_view name;
     std::string_view beginning;  // of its files; empty: not known by it
     std::string_view endings;    // of their names, each followed by a blank
-    std::string_view mend;       // {}: the file's name
+    std::string_view hint;       // {}: the file's name
 };
 
 constexpr std::string_view k_show_volume =
@@ -471,7 +473,7 @@ std::string other_format(std::string_view bytes, const std::filesystem::path& fi
     if (format == k_other_formats.end()) return "";
     const std::string name = printable(file.string(), 300);
     return fmt::format("is {}, not a valid {}; {}", format->name, noun,
-                       noun == "scene" ? fmt::format(fmt::runtime(format->mend), name)
+                       noun == "scene" ? fmt::format(fmt::runtime(format->hint), name)
                                        : fmt::format("name the {}", noun));
 }
 

@@ -35,12 +35,13 @@ std::vector<int> frames_found(const std::filesystem::path& name);
 /// Whether the files of two frames differ.
 bool differs_by_frame(const std::filesystem::path& name);
 
-/// Git LFS and git-annex leave a small stand-in where the content of a large file has not been
-/// fetched. What `file` stands in for and how to fetch it, to follow its name ("is a Git LFS
-/// pointer ..."); "" if it is no such stand-in. Also recognises the broken links of git-annex.
+/// Git LFS and git-annex leave a small placeholder if the content of a large file has not been
+/// fetched. Describes which placeholder `file` is and how to fetch its content, to follow its name
+/// ("is a Git LFS pointer ..."); "" if it is none. Also recognises the broken links of git-annex.
 std::string stand_in_of(const std::filesystem::path& file);
 
-/// What tells whether a file is the one that was read, and unchanged, without reading it again.
+/// A stamp by which one can tell, without reading it again, whether a file is still the one that
+/// was read, unchanged.
 struct FileStamp {
     dev_t device = 0;
     ino_t number = 0;
@@ -53,7 +54,7 @@ struct FileStamp {
 /// The stamp of the file that a name leads to; none if there is no such file.
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file);
 
-/// The stamps of all files that something was made of.
+/// The stamps of all files from which something was made.
 class FileStamps {
   public:
     FileStamps() = default;
@@ -72,12 +73,12 @@ class FileStamps {
 /// it. Thread safe.
 void remember_input(const std::filesystem::path& file);
 
-/// Who named an input: a scene, which may be a stranger's, or the user, whose own files may lie
+/// Who named an input: a scene, which may not be trusted, or the user, whose own files may lie
 /// anywhere.
 enum class NamedBy { scene, user };
 
-/// The door through which inputs come. Whatever opens a file for the user, or has a library open
-/// it, calls this before it does, or calls open_input. It checks that the file is a regular one,
+/// Admits an input. All code that opens a file for the user, or has a library open it, calls this
+/// before, or calls open_input. It checks that the file is a regular one,
 /// since a pipe would wait and a device never end, and that it lies where inputs may
 /// (confine_inputs), and remembers it (remember_input). Messages begin with `subject`
 /// ("plume.yaml", or the scene entry that names the file, followed by the file) and call what was
@@ -100,7 +101,7 @@ std::ifstream open_own_file(const std::filesystem::path& file);
 /// lead elsewhere.
 void confine_inputs();
 
-/// Whether they have to.
+/// Whether inputs are confined.
 bool inputs_are_confined();
 
 /// Whether `file` lies in `folder` or below it, after symbolic links. One that leads nowhere lies
@@ -114,14 +115,14 @@ std::vector<std::filesystem::path> inputs_outside(const std::filesystem::path& f
 /// Whether `file` is one of those, by whatever name, symbolic or hard link. Thread safe.
 bool is_input(const std::filesystem::path& file);
 
-/// What a file is that is not the text expected, by its first bytes or else by its name, and what
-/// to do with it, to follow "...: ": "is a VDB volume, not a valid scene; ..."; "" if nothing
-/// tells. `noun`: what was expected, as for read_text_file.
+/// Describes a file that is not the expected text, by its first bytes or else by its name, and how
+/// to use it, to follow "...: ": "is a VDB volume, not a valid scene; ..."; "" if it is not known.
+/// `noun`: what was expected, as for read_text_file.
 std::string other_format(std::string_view bytes, const std::filesystem::path& file,
                          std::string_view noun);
 
-/// Whether a pipe may stand for a file, as where the user's shell makes one on the command line. It
-/// is read until it ends; one that nobody writes to is empty.
+/// Whether a pipe is accepted as a file, such as one that the user's shell makes on the command
+/// line. It is read until it ends; one without a writer is empty.
 enum class Pipes { refused, read };
 
 /// The unmodified contents of a text file of at most `max_bytes`, which is admitted as by

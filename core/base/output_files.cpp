@@ -77,8 +77,8 @@ std::error_code make_folders(const fs::path& folder, std::vector<fs::path>& made
     return error;
 }
 
-/// What temporary files of this machine's begin with. Folders may be shared with others, whose
-/// locks are not seen everywhere.
+/// The prefix of the names of this machine's temporary files. Folders may be shared with other
+/// machines, whose locks are not visible everywhere.
 std::string temporary_prefix() {
     std::array<char, 65> host{};
     ::gethostname(host.data(), host.size() - 1);
@@ -134,8 +134,8 @@ int AtomicFile::create_in(const fs::path& folder) {
             error = errno;
             continue;
         }
-        // Where there are no locks nobody can remove it either. One that was removed just before it
-        // was locked is made again.
+        // Without locks nobody removes it either. A file that was removed just before it was locked
+        // is made again.
         ::flock(lock_, LOCK_EX);
         struct stat status {};
         if (::fstat(lock_, &status) == 0 && status.st_nlink > 0) return 0;
@@ -154,7 +154,7 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::remove_folders() const {
-    // Those that hold something else by now stay.
+    // Folders that contain something else by now are kept.
     std::error_code ignored;
     for (auto folder = made_folders_.rbegin(); folder != made_folders_.rend(); ++folder)
         fs::remove(*folder, ignored);
@@ -173,10 +173,10 @@ void AtomicFile::keep_permissions() const {
     if (error) fail(target_, error.message());
 }
 
-// Else the new name may reach the disk before what is in the file, and a power cut leave neither.
+// Otherwise the rename may reach the disk before the contents, and a power cut would lose both.
 void AtomicFile::write_through() const {
     if (::fsync(lock_) == 0) return;
-    // Some file systems cannot.
+    // Some file systems do not support it.
     if (errno == EINVAL || errno == ENOSYS || errno == ENOTSUP) return;
     fail(target_, std::generic_category().message(errno));
 }

@@ -35,9 +35,9 @@ class AtomicFile {
 
     const std::filesystem::path& temporary_path() const { return temporary_; }
 
-    /// Removes what runs on this machine that were killed left in `folder`: temporary files that
-    /// nobody is writing any more. `of_others_too`: and those of other machines that share it,
-    /// of which it cannot be known whether they still run.
+    /// Removes the temporary files in `folder` that killed runs on this machine left behind, which
+    /// nobody is writing any more. `of_others_too`: also those of other machines that share the
+    /// folder, whose runs may still be active.
     static void remove_left_overs(const std::filesystem::path& folder, bool of_others_too = false);
 
     /// Renames the temporary file to the target, replacing any existing file, which is there until
@@ -61,7 +61,7 @@ class AtomicFile {
 };
 
 /// A binary file that appears under its name only once it is complete: write, then commit. If any
-/// of it cannot be written, commit() throws, and nothing before.
+/// of it cannot be written, commit() throws, but no earlier call does.
 class OutputFile {
   public:
     /// Throws as AtomicFile's constructor.

@@ -13,17 +13,17 @@ namespace uw {
 
 namespace {
 
-// A tenth of the weight of what runs at the usual niceness.
+// A tenth of the scheduler's weight at the usual niceness.
 constexpr int k_background_niceness = 10;
 
-// On Linux niceness belongs to a thread, and 0 is the calling one. Who is nicer already stays so;
-// nothing can fail that matters.
+// On Linux niceness belongs to a thread, and 0 is the calling one. A thread that is nicer already
+// stays so; failures do not matter.
 void yield_to_others() {
     if (getpriority(PRIO_PROCESS, 0) < k_background_niceness)
         setpriority(PRIO_PROCESS, 0, k_background_niceness);
 }
 
-// Meets each thread of the pool as it begins to work for the thread that made this.
+// Is called by each thread of the pool as it begins to work for the thread that made this.
 class PoolObserver final : public tbb::task_scheduler_observer {
   public:
     PoolObserver() { observe(true); }
@@ -41,8 +41,9 @@ class PoolObserver final : public tbb::task_scheduler_observer {
 }  // namespace
 
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
-    // By the calling thread's floating-point settings. Otherwise they are those that the thread had
-    // when it used the pool first: inside Embree, which flushes denormal numbers to 0 meanwhile.
+    // Applies the calling thread's floating-point settings. Otherwise they would be those that it
+    // had when it first used the pool: inside Embree, which flushes denormal numbers to 0
+    // meanwhile.
     using Context = tbb::task_group_context;
     Context context(Context::bound, Context::default_traits | Context::fp_settings);
     const std::atomic<bool>* const stop = StopScope::of_this_thread();

@@ -13,8 +13,8 @@ void parallel_for(std::size_t count, const std::function<void(std::size_t)>& bod
 /// How many threads parallel_for may use now.
 int permitted_threads();
 
-/// Runs `body`, in which parallel_for (and the libraries that share its pool) uses at most so many
-/// threads, this one among them, whatever the rest of the program does; 0 means all cores.
+/// Runs `body`, within which parallel_for (and the libraries that share its pool) uses at most this
+/// many threads, the calling one included, whatever the rest of the program does; 0: all cores.
 void with_threads(int threads, const std::function<void()>& body);
 
 /// Limits how many threads parallel_for (and the libraries that share its pool) may use for as
@@ -32,9 +32,8 @@ class ThreadLimit {
     void* control_ = nullptr;
 };
 
-/// Leaves the processor to whatever else wants it: the calling thread from now on, and each thread
-/// of parallel_for's pool from when it first works for this one, until they end. For what goes on
-/// behind an answer that a user waits for.
+/// Lowers the priority of the calling thread from now on, and of each thread of parallel_for's pool
+/// from when it first works for this one, until they end: for work in the background.
 void work_in_background();
 
 }  // namespace uw

@@ -8,7 +8,7 @@ namespace uw {
 
 namespace {
 
-/// By which the state of splitmix64 grows from number to number.
+/// The increment of splitmix64's state.
 constexpr std::uint64_t k_bit_mixing_step = 0x9e3779b97f4a7c15U;
 
 /// splitmix64 (Steele, Lea and Flood 2014): the number that follows the state `x`. Every bit of the
@@ -62,7 +62,7 @@ namespace {
 
 constexpr double k_min_mean_of_rejection = 30;  // the method needs 10
 
-/// By adding up the probabilities of 0, 1, 2, ...
+/// Inversion: adds up the probabilities of 0, 1, 2, ...
 double by_inversion(double mean, double u) {
     double count = 0, probability = std::exp(-mean), sum = probability;
     // The sum stops short of 1 by its rounding.

@@ -11,8 +11,8 @@ namespace uw {
 /// on the number of threads nor on the order of their pixels.
 ///
 /// Paths of one `seed` and indices 0..2^k - 1 cover the unit cube evenly: their mean has less
-/// variance than that of independent paths, but says nothing of its own error. Means for different
-/// seeds are independent.
+/// variance than that of independent paths, but gives no estimate of its own error. Means for
+/// different seeds are independent.
 class PathRandom {
   public:
     PathRandom(std::uint64_t seed, std::uint32_t index);
@@ -32,18 +32,17 @@ class PathRandom {
     int dimension_ = 0;
 };
 
-/// The random number, uniform in (0, 1), of which a value is made: that of the key `key`, of a list
-/// the `component`th, in the variation `variation`. It depends on these and the seed alone, so that
-/// other keys and other variations change nothing.
+/// The random number, uniform in (0, 1), for the key `key` (in a list, for its `component`th entry)
+/// in the variation `variation`. It depends on these and the seed alone, so that other keys and
+/// other variations do not change it.
 double draw_random(std::uint64_t seed, std::string_view key, std::size_t component, int variation);
 
-/// A number of Poisson's distribution with this mean, whole and >= 0: the distribution itself, not
-/// a normal one in its place. Inversion below a mean of 30, above it the rejection method PTRS
+/// Draws from the Poisson distribution with this mean, exactly rather than by a normal
+/// approximation. Inversion below a mean of 30, above it the rejection method PTRS
 /// (Hörmann 1993, "The transformed rejection method for generating Poisson random variables").
 double poisson(double mean, PathRandom& random);
 
-/// Two independent numbers of the normal distribution with mean 0 and variance 1 (Box and Muller
-/// 1958).
+/// Draws two independent standard normal numbers (Box and Muller 1958).
 struct NormalPair {
     double first, second;
 };

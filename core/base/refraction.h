@@ -34,9 +34,9 @@ inline FresnelTransmittance fresnel_transmittance(double cos1, double n1, double
 }
 
 /// Snell's law in vector form (docs/physics.md, section 3): `direction` (unit) crosses from index
-/// `n1` to `n2` through a surface whose unit `normal` points the way the light goes (direction .
+/// `n1` to `n2` through a surface whose unit `normal` points along the light (direction .
 /// normal > 0). Unit result; empty on total reflection. Nothing is singular at normal incidence,
-/// and equal indices leave the direction as it is.
+/// and equal indices leave the direction unchanged.
 inline std::optional<Vector3> refract(const Vector3& direction, const Vector3& normal, double n1,
                                       double n2) {
     const double r = n1 / n2;

@@ -5,7 +5,7 @@
 
 namespace uw {
 
-/// The end of a message that needs more than its line: where causes, checks and mends stand.
+/// The end of a message that refers to the documentation of causes, checks and hints.
 /// `section` is a heading of docs/troubleshooting.md; scripts/check-docs looks for it there, so it
 /// is to be written out where this is called.
 inline std::string see_troubleshooting(std::string_view section) {

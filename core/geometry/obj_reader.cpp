@@ -242,7 +242,7 @@ std::vector<fs::path> files_named_by_obj(const fs::path& obj_file) {
 namespace {
 
 // What fits a large machine, not the format's limit.
-constexpr std::size_t k_max_corners = 1'500'000'000;
+constexpr std::size_t k_max_obj_corners = 1'500'000'000;
 // The number of combinations at one position that are searched for a corner's own. Where more meet,
 // some vertices are duplicated, which is harmless; time stays proportional to the corners.
 constexpr int k_max_compared = 64;
@@ -369,7 +369,7 @@ class ObjMesh {
 MeshFile read_obj(const std::filesystem::path& file, bool is_pbr,
                   std::vector<std::string>& warnings) {
     ObjFile source = read_obj_file(file);
-    if (source.corners.size() > k_max_corners) {
+    if (source.corners.size() > k_max_obj_corners) {
         throw InputError(file.string() +
                          ": more than 500 million triangles; split or thin out the mesh");
     }

@@ -52,14 +52,14 @@ std::optional<std::size_t> find_layer(std::string_view name) {
 }
 
 /// Every word that --layers accepts, for the message about an unknown one.
-std::string mend_of(std::string_view item) {
+std::string hint_of(std::string_view item) {
     std::vector<std::string_view> words{"all", "default", "lamps", "lamp.<name>"};
     for (const LayerKind& layer : k_layers) words.push_back(layer.name);
     return suggestion(item, words);
 }
 
 bool is_possible(const LayerKind& kind, const LayerSupply& supply) {
-    return kind.mend.empty() || supply.layers.has(kind.layer);
+    return kind.hint.empty() || supply.layers.has(kind.layer);
 }
 
 /// The endings of a layer's channels.
@@ -130,7 +130,7 @@ void LayerPlan::Selection::add(std::string_view item, std::span<const std::strin
             printable(item)));
     } else {
         throw UsageError(
-            fmt::format("--layers: '{}': unknown layer; {}", printable(item), mend_of(item)));
+            fmt::format("--layers: '{}': unknown layer; {}", printable(item), hint_of(item)));
     }
 }
 
@@ -144,7 +144,7 @@ void LayerPlan::Selection::add_all() {
 void LayerPlan::Selection::add_layer(std::size_t layer) {
     const LayerKind& kind = k_layers[layer];
     if (!is_possible(kind, supply))
-        throw UsageError(fmt::format("--layers: {}: {}", kind.name, kind.mend));
+        throw UsageError(fmt::format("--layers: {}: {}", kind.name, kind.hint));
     layers[layer] = true;
 }
 

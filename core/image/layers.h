@@ -75,7 +75,7 @@ struct LayerKind {
     std::string_view suffixes{};
     /// Why an image lacks the layer, and what to write to have it; empty if every image has it,
     /// else a pass has to provide it (LayerSupply).
-    std::string_view mend{};
+    std::string_view hint{};
     ForwardScatter forward_scatter = ForwardScatter::leaves;
 
     constexpr bool is_light() const {
@@ -86,7 +86,7 @@ struct LayerKind {
     }
 };
 
-namespace layer_mends {
+namespace layer_hints {
 inline constexpr std::string_view
     k_multiple =
         "the scene is rendered with single scattering; write --set render.scattering=multiple, or "
@@ -98,7 +98,7 @@ inline constexpr std::string_view
     k_sensor = "the camera has no sensor; add camera.sensor to the scene",
     k_flow = "other frames are those of a sequence; give its --frames",
     k_disparity = "needs a rig of at least two cameras; give cameras: a list of them";
-}  // namespace layer_mends
+}  // namespace layer_hints
 
 /// Every layer, in the order of Layer.
 inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
@@ -109,11 +109,11 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
      LayerKind::ForwardScatter::replaces},
     {Layer::backscatter_first, LayerContent::light, "backscatter_first", "", "",
      LayerKind::ForwardScatter::adds},
-    {Layer::multiple, LayerContent::light, "multiple", "", layer_mends::k_multiple},
-    {Layer::multiple_volume, LayerContent::light, "multiple.volume", "", layer_mends::k_multiple},
-    {Layer::multiple_surface, LayerContent::light, "multiple.surface", "", layer_mends::k_multiple},
-    {Layer::snow, LayerContent::light, "snow", "", layer_mends::k_snow},
-    {Layer::error, LayerContent::exact, "error", "", layer_mends::k_error},
+    {Layer::multiple, LayerContent::light, "multiple", "", layer_hints::k_multiple},
+    {Layer::multiple_volume, LayerContent::light, "multiple.volume", "", layer_hints::k_multiple},
+    {Layer::multiple_surface, LayerContent::light, "multiple.surface", "", layer_hints::k_multiple},
+    {Layer::snow, LayerContent::light, "snow", "", layer_hints::k_snow},
+    {Layer::error, LayerContent::exact, "error", "", layer_hints::k_error},
     {Layer::irradiance, LayerContent::exact, "irradiance"},
     {Layer::exitance, LayerContent::exact, "exitance"},
     {Layer::lit, LayerContent::share, "lit", "V"},
@@ -129,13 +129,13 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::material, LayerContent::point, "material", "V"},
     {Layer::crypto_object, LayerContent::matte, "crypto_object"},
     {Layer::crypto_material, LayerContent::matte, "crypto_material"},
-    {Layer::sensor, LayerContent::number, "sensor", "RGB", layer_mends::k_sensor},
-    {Layer::flow, LayerContent::match, "flow", "XY", layer_mends::k_flow},
-    {Layer::flow_back, LayerContent::match, "flow_back", "XY", layer_mends::k_flow},
-    {Layer::flow_occluded, LayerContent::match, "flow_occluded", "V", layer_mends::k_flow},
-    {Layer::disparity, LayerContent::match, "disparity", "XY", layer_mends::k_disparity},
+    {Layer::sensor, LayerContent::number, "sensor", "RGB", layer_hints::k_sensor},
+    {Layer::flow, LayerContent::match, "flow", "XY", layer_hints::k_flow},
+    {Layer::flow_back, LayerContent::match, "flow_back", "XY", layer_hints::k_flow},
+    {Layer::flow_occluded, LayerContent::match, "flow_occluded", "V", layer_hints::k_flow},
+    {Layer::disparity, LayerContent::match, "disparity", "XY", layer_hints::k_disparity},
     {Layer::disparity_occluded, LayerContent::match, "disparity_occluded", "V",
-     layer_mends::k_disparity},
+     layer_hints::k_disparity},
 }};
 
 constexpr const LayerKind& kind_of(Layer layer) {

@@ -105,9 +105,9 @@ double reference_wavelength(std::span<const double> bands_nm) {
 
 void read_resolution(const ConfigValue& both, const ConfigValue& width, const ConfigValue& height,
                      CameraDesc& camera) {
-    constexpr auto k_mend = "give [width, height] in pixels";
-    camera.width = width.integer(1, k_longest_image_side, k_mend);
-    camera.height = height.integer(1, k_longest_image_side, k_mend);
+    constexpr auto k_hint = "give [width, height] in pixels";
+    camera.width = width.integer(1, k_longest_image_side, k_hint);
+    camera.height = height.integer(1, k_longest_image_side, k_hint);
     if (const std::string fault = too_many_pixels(camera.width, camera.height); !fault.empty())
         both.fail(fault);
 }
@@ -182,10 +182,10 @@ IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camer
     intrinsics.cy = camera.height / 2.0;
     if (const auto fov = map.find("fov_x")) {
         map.finish("intrinsics with 'fov_x'");
-        constexpr auto k_mend = "give the horizontal field of view in degrees";
+        constexpr auto k_hint = "give the horizontal field of view in degrees";
         const bool fisheye = camera.distortion.model == DistortionDesc::Model::fisheye;
         const double degrees =
-            fisheye ? fov->within(1e-3, 360, k_mend) : fov->between(0, 180, k_mend);
+            fisheye ? fov->within(1e-3, 360, k_hint) : fov->between(0, 180, k_hint);
         if (degrees <= std::numbers::pi)
             context.warn(*fov, fmt::format("{} degrees is a very narrow view; degrees, not radians "
                                            "({} radians are {:.3g} degrees)?",
@@ -212,16 +212,16 @@ IntrinsicsDesc read_intrinsics(const ConfigValue& value, const CameraDesc& camer
 }
 
 /// Reads numbers into the leading elements of `places`.
-void read_coefficients(const ConfigValue& value, std::size_t least, std::string_view mend,
+void read_coefficients(const ConfigValue& value, std::size_t least, std::string_view hint,
                        std::span<double> places) {
-    const std::vector<ConfigValue> numbers = value.list(mend);
+    const std::vector<ConfigValue> numbers = value.list(hint);
     if (numbers.size() < least || numbers.size() > places.size()) {
         const std::string count = least == places.size()
                                       ? fmt::format("{}", least)
                                       : fmt::format("{} to {}", least, places.size());
-        value.fail(fmt::format("expected {} numbers, found {}; {}", count, numbers.size(), mend));
+        value.fail(fmt::format("expected {} numbers, found {}; {}", count, numbers.size(), hint));
     }
-    for (std::size_t i = 0; i < numbers.size(); ++i) places[i] = numbers[i].number(mend);
+    for (std::size_t i = 0; i < numbers.size(); ++i) places[i] = numbers[i].number(hint);
 }
 
 DistortionDesc read_distortion(const ConfigValue& value) {
@@ -234,11 +234,11 @@ DistortionDesc read_distortion(const ConfigValue& value) {
     if (const auto model = map.find("model")) distortion.model = model->choice(k_models);
     const auto k = map.find("k");
     if (distortion.model == Model::fisheye) {
-        constexpr auto k_mend = "give k1, k2, k3, k4";
-        if (k) read_coefficients(*k, 4, k_mend, std::span(distortion.k).first(4));
+        constexpr auto k_hint = "give k1, k2, k3, k4";
+        if (k) read_coefficients(*k, 4, k_hint, std::span(distortion.k).first(4));
         constexpr std::array<std::string_view, 4> k_names{"k1", "k2", "k3", "k4"};
         for (std::size_t i = 0; i < k_names.size() && !k; ++i)
-            if (const auto entry = map.find(k_names[i])) distortion.k[i] = entry->number(k_mend);
+            if (const auto entry = map.find(k_names[i])) distortion.k[i] = entry->number(k_hint);
         map.finish("model 'fisheye' (write k: [k1, k2, k3, k4])");
         return distortion;
     }
@@ -247,9 +247,9 @@ DistortionDesc read_distortion(const ConfigValue& value) {
                           distortion.k);
     }
     if (const auto p = map.find("p")) {
-        constexpr auto k_mend = "give two numbers: p1, p2";
-        const std::vector<ConfigValue> numbers = p->list_of(2, k_mend);
-        for (std::size_t i = 0; i < 2; ++i) distortion.p[i] = numbers[i].number(k_mend);
+        constexpr auto k_hint = "give two numbers: p1, p2";
+        const std::vector<ConfigValue> numbers = p->list_of(2, k_hint);
+        for (std::size_t i = 0; i < 2; ++i) distortion.p[i] = numbers[i].number(k_hint);
     }
     map.finish("model 'brown-conrady' (write k: [k1, k2, k3], p: [p1, p2])");
     return distortion;
@@ -296,9 +296,9 @@ CalibrationDesc read_calibration_name(const ConfigValue& value, const SceneConte
         calibration.file = read_existing_file(value, context);
         return calibration;
     }
-    constexpr auto k_mend = "write calibration: rig.yaml, or {file: rig.yaml, camera: cam0}";
-    ConfigMap map(value, {"file", "camera"}, k_mend);
-    calibration.file = read_existing_file(map.require("file", k_mend), context);
+    constexpr auto k_hint = "write calibration: rig.yaml, or {file: rig.yaml, camera: cam0}";
+    ConfigMap map(value, {"file", "camera"}, k_hint);
+    calibration.file = read_existing_file(map.require("file", k_hint), context);
     if (const auto camera = map.find("camera"))
         calibration.camera = camera->text("give the camera's name in the file, such as cam0");
     return calibration;
@@ -350,12 +350,12 @@ CameraDesc read_camera(const ConfigValue& value, const SceneContext& context) {
 namespace {
 
 RigCameraDesc read_rig_camera(const ConfigValue& value, const SceneContext& context) {
-    constexpr auto k_mend = "name the camera, such as left";
+    constexpr auto k_hint = "name the camera, such as left";
     const ConfigNode* const name = value.node().find("name");
-    if (name == nullptr) value.fail(fmt::format("'name' is missing; {}", k_mend));
+    if (name == nullptr) value.fail(fmt::format("'name' is missing; {}", k_hint));
     RigCameraDesc camera;
     camera.name =
-        read_short_name(ConfigValue(*name, value.path() + ".name"), "a file's name", k_mend);
+        read_short_name(ConfigValue(*name, value.path() + ".name"), "a file's name", k_hint);
     // The rest is a camera like that of a single-camera scene.
     ConfigNode unnamed = value.node();
     std::erase_if(unnamed.entries, [](const auto& entry) { return entry.key == "name"; });
@@ -374,13 +374,13 @@ std::vector<RigCameraDesc> read_cameras(const ConfigValue& value,
                                         SceneContext& context) {
     Affine world_from_rig;
     if (rig) {
-        constexpr auto k_mend = "write rig: {pose: {position: [0, 0, 0], look_at: [0, 0, 1]}}";
-        ConfigMap map(*rig, {"pose", "trajectory"}, k_mend);
+        constexpr auto k_hint = "write rig: {pose: {position: [0, 0, 0], look_at: [0, 0, 1]}}";
+        ConfigMap map(*rig, {"pose", "trajectory"}, k_hint);
         if (const auto trajectory = map.find("trajectory")) {
             map.finish("a rig with a trajectory");
             context.rig_trajectory = read_trajectory(*trajectory, context, true);
         } else {
-            world_from_rig = read_pose(map.require("pose", k_mend));
+            world_from_rig = read_pose(map.require("pose", k_hint));
         }
     }
     std::vector<RigCameraDesc> cameras;

@@ -39,8 +39,8 @@ struct DistortionDesc {
     friend bool operator==(const DistortionDesc&, const DistortionDesc&) = default;
 };
 
-/// The materials before a port, in it and behind it whose indices depend on the wavelength; the
-/// port's numbers are theirs at the camera's wavelength (set_wavelength).
+/// Those of the materials before, in and behind a port whose indices depend on the wavelength; the
+/// port's numbers are their indices at the camera's wavelength (set_wavelength).
 struct PortDispersion {
     std::optional<DispersionDesc> air{}, glass{}, water{};
 
@@ -87,7 +87,7 @@ struct LensDesc {
     std::optional<double> focus_distance{};
 };
 
-/// A file that holds a camera's resolution, intrinsics, distortion and, perhaps, port.
+/// A file that contains a camera's resolution, intrinsics, distortion and, perhaps, port.
 struct CalibrationDesc {
     std::filesystem::path file;
     std::string camera;  ///< which of several cameras in it; empty: the only one
@@ -100,7 +100,7 @@ struct CameraDesc {
     IntrinsicsDesc intrinsics;
     DistortionDesc distortion;
     std::optional<PortDesc> port;
-    /// The light in vacuum that the port's indices are of, and with them all rays [nm].
+    /// The wavelength in vacuum for which the port's indices, and thus all rays, are valid [nm].
     double wavelength_nm = 550;
     std::optional<LensDesc> lens;
     std::optional<SensorDesc> sensor;
@@ -122,8 +122,7 @@ struct CameraDesc {
 /// Whether the camera's rays depend on the wavelength.
 bool disperses(const CameraDesc& camera);
 
-/// Makes the camera that of another wavelength [nm]: gives its port the indices there, as far as
-/// they are not the same for all.
+/// Changes the wavelength of the camera [nm]: sets those of its port's indices that depend on it.
 void set_wavelength(CameraDesc& camera, double wavelength_nm);
 
 /// The band, one of `bands_nm`, at whose wavelength a scene's ground truth and calibration hold,
@@ -138,11 +137,11 @@ struct RigCameraDesc {
 
 /// The longest side of an image [pixels].
 inline constexpr int k_longest_image_side = 32768;
-/// Why an image of this size is refused, with the mend; "" if it is not.
+/// The reason why an image of this size is rejected, with the hint; "" if it is not.
 std::string too_many_pixels(int width, int height);
 
-/// Readers for what calibration files know of a camera, too: its resolution and its port. All throw
-/// InputError at the value.
+/// Readers for the parts of a camera that calibration files contain, too: resolution and port. All
+/// throw InputError at the value.
 
 /// Sets the resolution [pixels]; `both` is the location of the pair, for messages.
 void read_resolution(const ConfigValue& both, const ConfigValue& width, const ConfigValue& height,

@@ -46,20 +46,20 @@ void ConfigValue::fail(std::string_view what) const {
     throw InputError(fmt::format("{}: {}", location(), what));
 }
 
-void ConfigValue::fail_expected(std::string_view expected, std::string_view mend) const {
+void ConfigValue::fail_expected(std::string_view expected, std::string_view hint) const {
     if (node_->kind == ConfigNode::Kind::null) {
-        fail(fmt::format("has no value; {}, or remove the key", mend));
+        fail(fmt::format("has no value; {}, or remove the key", hint));
     }
-    fail(fmt::format("expected {}, found {}; {}", expected, node_->description(), mend));
+    fail(fmt::format("expected {}, found {}; {}", expected, node_->description(), hint));
 }
 
-void ConfigValue::fail_number(NumberText outcome, std::string_view mend) const {
+void ConfigValue::fail_number(NumberText outcome, std::string_view hint) const {
     const std::string found = printable(node_->scalar);
     if (outcome == NumberText::not_finite) {
-        fail(fmt::format("{} is not a finite number; {}", found, mend));
+        fail(fmt::format("{} is not a finite number; {}", found, hint));
     }
     if (outcome == NumberText::out_of_range) {
-        fail(fmt::format("{} is too large or too small for a number; {}", found, mend));
+        fail(fmt::format("{} is too large or too small for a number; {}", found, hint));
     }
     if (looks_like_decimal_comma(node_->scalar)) {
         fail(fmt::format("expected a number, found '{}'; write the decimal point as '.'", found));
@@ -68,69 +68,69 @@ void ConfigValue::fail_number(NumberText outcome, std::string_view mend) const {
         fail(
             fmt::format("expected a number, found '{}'; write the number alone, without a unit "
                         "({})",
-                        found, mend));
+                        found, hint));
     }
-    fail_expected("a number", mend);
+    fail_expected("a number", hint);
 }
 
-double ConfigValue::number(std::string_view mend) const {
-    if (node_->kind != ConfigNode::Kind::scalar || node_->quoted) fail_expected("a number", mend);
+double ConfigValue::number(std::string_view hint) const {
+    if (node_->kind != ConfigNode::Kind::scalar || node_->quoted) fail_expected("a number", hint);
     double value = 0;
     const NumberText outcome = parse_number(node_->scalar, value);
-    if (outcome != NumberText::number) fail_number(outcome, mend);
+    if (outcome != NumberText::number) fail_number(outcome, hint);
     if (std::abs(value) > k_max_number) {
-        fail(fmt::format("{} is larger than anything in a scene; {}", value, mend));
+        fail(fmt::format("{} is larger than anything in a scene; {}", value, hint));
     }
     return value;
 }
 
-double ConfigValue::positive(std::string_view mend) const {
-    const double value = number(mend);
-    if (value <= 0) fail(fmt::format("must be greater than 0, found {}; {}", value, mend));
+double ConfigValue::positive(std::string_view hint) const {
+    const double value = number(hint);
+    if (value <= 0) fail(fmt::format("must be greater than 0, found {}; {}", value, hint));
     return value;
 }
 
-double ConfigValue::non_negative(std::string_view mend) const {
-    const double value = number(mend);
-    if (value < 0) fail(fmt::format("must not be negative, found {}; {}", value, mend));
+double ConfigValue::non_negative(std::string_view hint) const {
+    const double value = number(hint);
+    if (value < 0) fail(fmt::format("must not be negative, found {}; {}", value, hint));
     return value;
 }
 
-double ConfigValue::within(double low, double high, std::string_view mend) const {
-    const double value = number(mend);
+double ConfigValue::within(double low, double high, std::string_view hint) const {
+    const double value = number(hint);
     if (value < low || value > high) {
-        fail(fmt::format("must be from {} to {}, found {}; {}", low, high, value, mend));
+        fail(fmt::format("must be from {} to {}, found {}; {}", low, high, value, hint));
     }
     return value;
 }
 
-double ConfigValue::between(double low, double high, std::string_view mend) const {
-    const double value = number(mend);
+double ConfigValue::between(double low, double high, std::string_view hint) const {
+    const double value = number(hint);
     if (value <= low || value >= high) {
-        fail(fmt::format("must lie between {} and {}, found {}; {}", low, high, value, mend));
+        fail(fmt::format("must lie between {} and {}, found {}; {}", low, high, value, hint));
     }
     return value;
 }
 
-int ConfigValue::integer(int low, int high, std::string_view mend) const {
-    const double value = number(mend);
+int ConfigValue::integer(int low, int high, std::string_view hint) const {
+    const double value = number(hint);
     if (value != std::floor(value)) {
-        fail(fmt::format("expected a whole number, found {}; {}", value, mend));
+        fail(fmt::format("expected a whole number, found {}; {}", value, hint));
     }
     if (value < low || value > high) {
-        fail(fmt::format("must be from {} to {}, found {}; {}", low, high, value, mend));
+        fail(fmt::format("must be from {} to {}, found {}; {}", low, high, value, hint));
     }
     return static_cast<int>(value);
 }
 
-std::string ConfigValue::text(std::string_view mend) const {
-    if (node_->kind != ConfigNode::Kind::scalar) fail_expected("text", mend);
-    if (node_->scalar.empty()) fail(fmt::format("is empty; {}", mend));
+std::string ConfigValue::text(std::string_view hint) const {
+    if (node_->kind != ConfigNode::Kind::scalar) fail_expected("text", hint);
+    if (node_->scalar.empty()) fail(fmt::format("is empty; {}", hint));
     return node_->scalar;
 }
 
-std::vector<ConfigValue> ConfigValue::list(std::string_view mend) const {
-    if (node_->kind != ConfigNode::Kind::sequence) fail_expected("a list", mend);
+std::vector<ConfigValue> ConfigValue::list(std::string_view hint) const {
+    if (node_->kind != ConfigNode::Kind::sequence) fail_expected("a list", hint);
     std::vector<ConfigValue> values;
     values.reserve(node_->items.size());
     for (std::size_t i = 0; i < node_->items.size(); ++i) {
@@ -139,17 +139,17 @@ std::vector<ConfigValue> ConfigValue::list(std::string_view mend) const {
     return values;
 }
 
-std::vector<ConfigValue> ConfigValue::list_of(std::size_t count, std::string_view mend) const {
+std::vector<ConfigValue> ConfigValue::list_of(std::size_t count, std::string_view hint) const {
     if (node_->kind != ConfigNode::Kind::sequence || node_->items.size() != count) {
-        fail_expected(fmt::format("a list of {}", count), mend);
+        fail_expected(fmt::format("a list of {}", count), hint);
     }
-    return list(mend);
+    return list(hint);
 }
 
 std::vector<ConfigValue> ConfigValue::per_band(std::size_t band_count,
-                                               std::string_view mend) const {
+                                               std::string_view hint) const {
     if (node_->kind == ConfigNode::Kind::scalar) return std::vector(band_count, *this);
-    std::vector<ConfigValue> values = list(mend);
+    std::vector<ConfigValue> values = list(hint);
     if (values.size() != band_count) {
         fail(fmt::format("has {} value{}, but water.bands has {}; {}", values.size(),
                          values.size() == 1 ? "" : "s", band_count,
@@ -159,25 +159,25 @@ std::vector<ConfigValue> ConfigValue::per_band(std::size_t band_count,
 }
 
 std::vector<double> ConfigValue::non_negative_per_band(std::size_t band_count,
-                                                       std::string_view mend) const {
+                                                       std::string_view hint) const {
     std::vector<double> values;
     values.reserve(band_count);
-    for (const ConfigValue& value : per_band(band_count, mend)) {
-        values.push_back(value.non_negative(mend));
+    for (const ConfigValue& value : per_band(band_count, hint)) {
+        values.push_back(value.non_negative(hint));
     }
     return values;
 }
 
-Vector3 ConfigValue::vector(std::string_view mend) const {
-    const std::vector<ConfigValue> values = list_of(3, mend);
-    return {values[0].number(mend), values[1].number(mend), values[2].number(mend)};
+Vector3 ConfigValue::vector(std::string_view hint) const {
+    const std::vector<ConfigValue> values = list_of(3, hint);
+    return {values[0].number(hint), values[1].number(hint), values[2].number(hint)};
 }
 
-Vector3 ConfigValue::direction(std::string_view mend) const {
-    const Vector3 v = vector(mend);
+Vector3 ConfigValue::direction(std::string_view hint) const {
+    const Vector3 v = vector(hint);
     const double length = std::hypot(v.x, v.y, v.z);
     if (!(length > k_shortest_direction) || !std::isfinite(length)) {
-        fail(fmt::format("[{}, {}, {}] has no direction; {}", v.x, v.y, v.z, mend));
+        fail(fmt::format("[{}, {}, {}] has no direction; {}", v.x, v.y, v.z, hint));
     }
     return v / length;
 }
@@ -191,14 +191,14 @@ std::size_t ConfigValue::word_index(std::span<const std::string_view> words) con
 }
 
 ConfigMap::ConfigMap(ConfigValue value, std::vector<std::string_view> allowed,
-                     std::string_view mend)
+                     std::string_view hint)
     : value_(std::move(value)), allowed_(std::move(allowed)) {
     const ConfigNode& node = value_.node();
     if (node.kind == ConfigNode::Kind::null) {
-        value_.fail(fmt::format("has no value; {}, or remove the key", mend));
+        value_.fail(fmt::format("has no value; {}, or remove the key", hint));
     }
     if (node.kind != ConfigNode::Kind::map) {
-        value_.fail(fmt::format("expected a map, found {}; {}", node.description(), mend));
+        value_.fail(fmt::format("expected a map, found {}; {}", node.description(), hint));
     }
     read_.resize(node.entries.size(), false);
     for (const ConfigNode::Entry& entry : node.entries) {
@@ -226,9 +226,9 @@ std::optional<ConfigValue> ConfigMap::find(std::string_view key) {
     return std::nullopt;
 }
 
-ConfigValue ConfigMap::require(std::string_view key, std::string_view mend) {
+ConfigValue ConfigMap::require(std::string_view key, std::string_view hint) {
     if (std::optional<ConfigValue> found = find(key)) return *std::move(found);
-    value_.fail(fmt::format("'{}' is missing; {}", key, mend));
+    value_.fail(fmt::format("'{}' is missing; {}", key, hint));
 }
 
 void ConfigMap::finish(std::string_view by) const {

@@ -73,17 +73,17 @@ constexpr std::array<std::pair<std::string_view, Material>, 6> k_index_words{
      {"pmma", Material::pmma},
      {"polycarbonate", Material::polycarbonate}}};
 
-/// What has no dispersion of its own, or whose dispersion the scene's water decides.
+/// Materials without dispersion, or whose dispersion depends on the scene's water.
 enum class Plain { air, seawater, freshwater };
 constexpr std::array<std::pair<std::string_view, Plain>, 3> k_other_index_words{
     {{"air", Plain::air}, {"seawater", Plain::seawater}, {"freshwater", Plain::freshwater}}};
 
-constexpr auto k_index_mend =
+constexpr auto k_index_hint =
     "give a refractive index, such as 1.0, 1.49 or 1.334, or a material, such as bk7, seawater, "
     "{salinity: 35, temperature: 10} or {n_d: 1.5168, abbe: 64.2}";
 
 DispersionDesc read_by_numbers(const ConfigValue& value) {
-    ConfigMap map(value, {"salinity", "temperature", "n_d", "abbe"}, k_index_mend);
+    ConfigMap map(value, {"salinity", "temperature", "n_d", "abbe"}, k_index_hint);
     DispersionDesc desc;
     if (const auto n_d = map.find("n_d")) {
         desc.material = Material::abbe;
@@ -99,7 +99,7 @@ DispersionDesc read_by_numbers(const ConfigValue& value) {
     if (const auto entry = map.find("temperature"))
         desc.temperature = entry->within(-3, 50, "give the temperature in degrees Celsius");
     map.finish("water (write {salinity: 35, temperature: 10}, or n_d and abbe)");
-    if (!desc.salinity && !desc.temperature) value.fail(fmt::format("is empty; {}", k_index_mend));
+    if (!desc.salinity && !desc.temperature) value.fail(fmt::format("is empty; {}", k_index_hint));
     return desc;
 }
 
@@ -112,7 +112,7 @@ std::optional<DispersionDesc> read_index(const ConfigValue& value, double& numbe
                          !value.node().scalar.empty() &&
                          parse_number(value.node().scalar, parsed) == NumberText::no_number;
     if (!is_word) {
-        number = value.within(1, 3, k_index_mend);
+        number = value.within(1, 3, k_index_hint);
         return std::nullopt;
     }
     for (const auto& [word, material] : k_index_words)

@@ -28,8 +28,8 @@ struct DispersionDesc {
     friend bool operator==(const DispersionDesc&, const DispersionDesc&) = default;
 };
 
-/// Wavelengths at which the materials are known well enough for rays [nm]: somewhat beyond what
-/// their measurements cover.
+/// The range of wavelengths at which the materials' indices are accurate enough for rays [nm]:
+/// somewhat wider than that of their measurements.
 inline constexpr double k_shortest_dispersion_nm = 300, k_longest_dispersion_nm = 1100;
 
 /// The index at a wavelength. Precondition: water has its salinity and temperature.

@@ -15,10 +15,10 @@ namespace {
 constexpr auto k_lengths = "give three lengths in metres";
 
 PerBand read_reflectance(const ConfigValue& value, const SceneContext& context) {
-    constexpr auto k_mend = "give the fraction of light reflected, from 0 to 1";
+    constexpr auto k_hint = "give the fraction of light reflected, from 0 to 1";
     PerBand reflectance;
-    for (const ConfigValue& entry : value.per_band(context.band_count, k_mend)) {
-        const double rho = entry.non_negative(k_mend);
+    for (const ConfigValue& entry : value.per_band(context.band_count, k_hint)) {
+        const double rho = entry.non_negative(k_hint);
         if (rho > 1) {
             entry.fail(
                 fmt::format("must be from 0 to 1, found {}, which looks like {}; give the "
@@ -67,11 +67,11 @@ void read_shape(ConfigMap& map, const ConfigValue& type, GeometryDesc& object) {
 }
 
 std::vector<std::string> read_lamp_names(const ConfigValue& value, bool& all) {
-    constexpr auto k_mend = "write all, or a list of the lights' names";
+    constexpr auto k_hint = "write all, or a list of the lights' names";
     all = value.node().kind == ConfigNode::Kind::scalar && value.node().scalar == "all";
     std::vector<std::string> names;
     if (all) return names;
-    for (const ConfigValue& name : value.list(k_mend)) names.push_back(name.text(k_mend));
+    for (const ConfigValue& name : value.list(k_hint)) names.push_back(name.text(k_hint));
     if (names.empty()) value.fail("lists no light; write all, a list of names, or leave it out");
     return names;
 }

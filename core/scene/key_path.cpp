@@ -180,8 +180,8 @@ Node& child_of(Node& node, const Child& child) {
     return child.is_item ? node.items[child.index] : node.entries[child.index].value;
 }
 
-/// What the step `i` of a path leads to from `node`, whose own path is `path`; `i` becomes that of
-/// the last of joined steps.
+/// The child of `node`, whose own path is `path`, to which the step `i` of a path leads; `i`
+/// becomes the index of the last joined step.
 std::optional<Child> child_at(const ConfigNode& node, const std::vector<KeyStep>& steps,
                               std::size_t& i, std::string_view path) {
     if (steps[i].is_any) return std::nullopt;
@@ -198,20 +198,20 @@ std::optional<Child> child_at(const ConfigNode& node, const std::vector<KeyStep>
     return std::nullopt;
 }
 
-/// The way from `root` along a path; none if it does not exist.
-std::optional<std::vector<Child>> way_to(const ConfigNode& root, std::string_view path) {
+/// The children from `root` along a path; none if it does not exist.
+std::optional<std::vector<Child>> children_to(const ConfigNode& root, std::string_view path) {
     const std::vector<KeyStep> steps = parse_key_path(path);
     if (steps.empty()) return std::nullopt;
-    std::vector<Child> way;
+    std::vector<Child> children;
     const ConfigNode* node = &root;
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const std::string_view before = i == 1 ? std::string_view(steps[0].key) : "";
         const auto child = child_at(*node, steps, i, before);
         if (!child) return std::nullopt;
-        way.push_back(*child);
+        children.push_back(*child);
         node = &child_of(*node, *child);
     }
-    return way;
+    return children;
 }
 
 }  // namespace
@@ -272,7 +272,8 @@ std::string joined_key(const ConfigNode& map, const std::vector<KeyStep>& steps,
 
 namespace {
 
-/// Appends the paths of what `steps` from `i` on lead to below `node`, which is at `path`.
+/// Appends the paths of all nodes below `node`, which is at `path`, to which `steps` from `i` on
+/// lead.
 void expand(const ConfigNode& node, const std::vector<KeyStep>& steps, std::size_t i,
             std::string path, std::vector<std::string>& paths) {
     if (std::none_of(steps.begin() + static_cast<std::ptrdiff_t>(i), steps.end(),
@@ -347,7 +348,7 @@ void set_value(ConfigNode& root, std::string_view path, ConfigNode value,
 
 namespace {
 
-/// The same; the path itself where * stands for nothing.
+/// The same; the path itself if * matches nothing.
 std::vector<std::string> paths_for(const ConfigNode& root, std::string_view path) {
     std::vector<std::string> paths;
     const std::vector<KeyStep> steps = parse_key_path(path);
@@ -359,10 +360,10 @@ std::vector<std::string> paths_for(const ConfigNode& root, std::string_view path
 }  // namespace
 
 const ConfigNode* find_value(const ConfigNode& root, std::string_view path) {
-    const auto way = way_to(root, path);
-    if (!way) return nullptr;
+    const auto children = children_to(root, path);
+    if (!children) return nullptr;
     const ConfigNode* node = &root;
-    for (const Child& child : *way) node = &child_of(*node, child);
+    for (const Child& child : *children) node = &child_of(*node, child);
     return node;
 }
 
@@ -376,12 +377,12 @@ bool remove_value(ConfigNode& root, std::string_view path) {
             is_there = remove_value(root, *one) || is_there;
         return is_there;
     }
-    const auto way = way_to(root, path);
-    if (!way) return false;
+    const auto children = children_to(root, path);
+    if (!children) return false;
     ConfigNode* node = &root;
-    for (std::size_t i = 0; i + 1 < way->size(); ++i) node = &child_of(*node, (*way)[i]);
-    const auto at = static_cast<std::ptrdiff_t>(way->back().index);
-    if (way->back().is_item)
+    for (std::size_t i = 0; i + 1 < children->size(); ++i) node = &child_of(*node, (*children)[i]);
+    const auto at = static_cast<std::ptrdiff_t>(children->back().index);
+    if (children->back().is_item)
         node->items.erase(node->items.begin() + at);
     else
         node->entries.erase(node->entries.begin() + at);
@@ -397,7 +398,7 @@ std::vector<KeyStep> resolved(const ConfigNode& scene, const std::string& key) {
     std::string path;
     for (std::size_t i = 0; i < steps.size() && node != nullptr; ++i) {
         const std::size_t first = i;
-        if (steps[i].is_any) break;  // for nothing that is there
+        if (steps[i].is_any) break;  // it matches nothing
         if (node->kind == ConfigNode::Kind::sequence) {
             KeyStep& step = steps[i];
             for (std::size_t item = 0;

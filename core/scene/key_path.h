@@ -19,7 +19,7 @@ struct KeyStep {
     bool is_any = false;
     bool is_quoted = false;  // the key is all of a name, whatever is in it
 
-    /// As it is written in a path: "position", "[0]", "*", or in quotes what is no word.
+    /// The step as written in a path: "position", "[0]", "*", or in quotes if it is not a word.
     std::string text() const;
     friend bool operator==(const KeyStep& a, const KeyStep& b) {
         return a.key == b.key && a.index == b.index && a.is_any == b.is_any;
@@ -32,12 +32,12 @@ struct KeyStep {
 /// key.
 std::vector<KeyStep> parse_key_path(std::string_view path);
 
-/// Where the path of "key.path=value" ends: the place of the first equals sign outside quotes, npos
-/// if there is none.
+/// The end of the path in "key.path=value": the position of the first equals sign outside quotes,
+/// npos if there is none.
 std::size_t end_of_path(std::string_view override_text);
 
-/// The paths that `path` stands for: itself, or with * for an entry those of all entries, as far as
-/// the scene has them. Throws InputError, beginning with `origin`, if * stands for nothing.
+/// The paths that `path` matches: itself or, if it has * for an entry, those of all such entries of
+/// the scene. Throws InputError, beginning with `origin`, if * matches nothing.
 std::vector<std::string> expanded_paths(const ConfigNode& root, std::string_view path,
                                         const std::string& origin);
 
@@ -66,7 +66,7 @@ void set_value(ConfigNode& root, std::string_view path, ConfigNode value,
 const ConfigNode* find_value(const ConfigNode& root, std::string_view path);
 bool remove_value(ConfigNode& root, std::string_view path);
 
-/// Whether the path `part` leads to the value at `whole` or into it, however each is written:
+/// Whether the path `part` leads to the value at `whole` or into it, in whatever spelling:
 /// lamps.left.position[0] is part of lamps[0].position if that lamp is called left, and of
 /// lamps.*.position.
 bool is_part_of(const ConfigNode& scene, const std::string& part, const std::string& whole);

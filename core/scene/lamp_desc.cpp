@@ -39,12 +39,12 @@ LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& con
          {"led", Type::led}}};
     spectrum.type = type.choice(k_types);
     if (spectrum.type == Type::blackbody) {
-        constexpr auto k_mend = "give the colour temperature in kelvin, such as 5600";
-        spectrum.temperature = map.require("temperature", k_mend).within(500, 100000, k_mend);
+        constexpr auto k_hint = "give the colour temperature in kelvin, such as 5600";
+        spectrum.temperature = map.require("temperature", k_hint).within(500, 100000, k_hint);
     }
     if (spectrum.type == Type::led) {
-        constexpr auto k_mend = "name one of the CIE's LED illuminants, such as LED-B4";
-        spectrum.name = map.require("name", k_mend).text(k_mend);
+        constexpr auto k_hint = "name one of the CIE's LED illuminants, such as LED-B4";
+        spectrum.name = map.require("name", k_hint).text(k_hint);
     }
     map.finish("spectrum type '" + type.node().scalar + "'");
     return spectrum;
@@ -94,26 +94,26 @@ LampProfileDesc read_spot(ConfigMap& map, const SceneContext& /*context*/) {
 }
 
 LampProfileDesc read_cosine(ConfigMap& map, const SceneContext& /*context*/) {
-    constexpr auto k_mend = "give the full angle at half intensity in degrees";
-    return CosineProfileDesc{map.require("fwhm", k_mend).between(0, 180, k_mend)};
+    constexpr auto k_hint = "give the full angle at half intensity in degrees";
+    return CosineProfileDesc{map.require("fwhm", k_hint).between(0, 180, k_hint)};
 }
 
 LampProfileDesc read_table_profile(ConfigMap& map, const SceneContext& /*context*/) {
-    constexpr auto k_mend =
+    constexpr auto k_hint =
         "write {type: table, angles: [0, 20, 40, 60], values: [1, 0.9, 0.4, 0]}";
     constexpr std::size_t k_most = 1024;
     TableProfileDesc profile;
-    const ConfigValue angles = map.require("angles", k_mend),
-                      values = map.require("values", k_mend);
-    for (const ConfigValue& entry : angles.list(k_mend)) {
+    const ConfigValue angles = map.require("angles", k_hint),
+                      values = map.require("values", k_hint);
+    for (const ConfigValue& entry : angles.list(k_hint)) {
         const double angle = entry.within(0, 180, "give angles from the lamp's axis in degrees");
         if (profile.angles.empty() ? angle != 0 : angle <= profile.angles.back())
-            entry.fail(fmt::format("must ascend from 0, found {}; {}", angle, k_mend));
+            entry.fail(fmt::format("must ascend from 0, found {}; {}", angle, k_hint));
         profile.angles.push_back(angle);
     }
     if (profile.angles.size() < 2 || profile.angles.size() > k_most)
-        angles.fail(fmt::format("needs 2 to {} angles; {}", k_most, k_mend));
-    for (const ConfigValue& entry : values.list_of(profile.angles.size(), k_mend))
+        angles.fail(fmt::format("needs 2 to {} angles; {}", k_most, k_hint));
+    for (const ConfigValue& entry : values.list_of(profile.angles.size(), k_hint))
         profile.values.push_back(entry.within(
             0, 1, "give the intensity relative to the lamp's; divide by the greatest"));
     if (std::ranges::max(profile.values) == 0)
@@ -159,8 +159,8 @@ bool is_absolute(const LampProfileDesc& profile) {
     return std::visit([](const auto& desc) { return desc.k_is_absolute; }, profile);
 }
 
-void read_lumens(const ConfigValue& value, std::string_view mend, LampDesc& lamp) {
-    lamp.lumens = value.positive(mend);
+void read_lumens(const ConfigValue& value, std::string_view hint, LampDesc& lamp) {
+    lamp.lumens = value.positive(hint);
     if (!lamp.spectrum) {
         value.fail(
             "only the lamp's spectrum can convert lumens to watts; give it, such as spectrum: "
@@ -214,9 +214,9 @@ void read_samples(ConfigMap& map, int& samples) {
 
 LampExtentDesc read_rectangle(ConfigMap& map) {
     LampExtentDesc extent;
-    constexpr auto k_mend = "give the sides of the luminous rectangle in metres";
-    extent.width = map.require("width", k_mend).positive(k_mend);
-    extent.height = map.require("height", k_mend).positive(k_mend);
+    constexpr auto k_hint = "give the sides of the luminous rectangle in metres";
+    extent.width = map.require("width", k_hint).positive(k_hint);
+    extent.height = map.require("height", k_hint).positive(k_hint);
     if (const auto rotate = map.find("rotate"))
         extent.rotate =
             rotate->within(-360, 360, "give the turn about the lamp's direction in degrees");
@@ -224,10 +224,10 @@ LampExtentDesc read_rectangle(ConfigMap& map) {
     return extent;
 }
 
-LampExtentDesc read_round(ConfigMap& map, LampExtentDesc::Shape shape, std::string_view mend) {
+LampExtentDesc read_round(ConfigMap& map, LampExtentDesc::Shape shape, std::string_view hint) {
     LampExtentDesc extent;
     extent.shape = shape;
-    extent.radius = map.require("radius", mend).positive(mend);
+    extent.radius = map.require("radius", hint).positive(hint);
     read_samples(map, extent.samples);
     return extent;
 }
@@ -262,8 +262,8 @@ void read_irradiance(ConfigMap& map, const SceneContext& context, LampDesc& lamp
 /// A lamp of type sun. Its direction is the world's, in the water.
 void read_sun(ConfigMap& map, const SceneContext& context, LampDesc& lamp) {
     SunDesc sun;
-    constexpr auto k_mend = "give the direction in which its light travels in the water";
-    lamp.direction = map.require("direction", k_mend).direction(k_mend);
+    constexpr auto k_hint = "give the direction in which its light travels in the water";
+    lamp.direction = map.require("direction", k_hint).direction(k_hint);
     if (!context.water_surface)
         map.value().fail(
             "a sun's light begins at the water's surface, but the scene does not say where that "

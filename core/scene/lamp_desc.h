@@ -39,12 +39,12 @@ struct LampExtentDesc {
     /// along LampPlacement::across.
     double rotate = 0;
     double radius = 0;  ///< of a disk or a sphere [m]
-    int samples = 32;   ///< how many points stand for it, 1..1024
+    int samples = 32;   ///< number of points that represent it, 1..1024
 
     friend bool operator==(const LampExtentDesc&, const LampExtentDesc&) = default;
 };
 
-/// Equally bright in all directions.
+/// An isotropic profile.
 struct IsotropicProfileDesc {
     /// Whether the profile also determines the lamp's brightness, so that it need not be given.
     static constexpr bool k_is_absolute = false;
@@ -99,11 +99,11 @@ struct IesProfileDesc {
 using LampProfileDesc = std::variant<IsotropicProfileDesc, SpotProfileDesc, CosineProfileDesc,
                                      TableProfileDesc, IesProfileDesc>;
 
-/// What makes a lamp a sun: its light is parallel, or comes from a disc in the sky, and enters the
-/// water through its surface.
+/// The properties of a lamp that is a sun: its light is parallel, or comes from a disc in the sky,
+/// and enters the water through its surface.
 struct SunDesc {
-    double angle = 0;          ///< angular diameter of the disc, in the water [degrees], 0..90
-    int samples = 32;          ///< how many directions stand for it unless the angle is 0, 1..1024
+    double angle = 0;  ///< angular diameter of the disc, in the water [degrees], 0..90
+    int samples = 32;  ///< number of directions that represent it unless the angle is 0, 1..1024
     WaterSurfaceDesc surface;  ///< the scene's (WaterDesc::surface)
 
     friend bool operator==(const SunDesc&, const SunDesc&) = default;
@@ -111,7 +111,8 @@ struct SunDesc {
 
 struct SkyDesc;  // core/scene/sky_desc.h
 
-/// What makes a lamp the light of a volume: where it shines is up to the volume's grid.
+/// The properties of a lamp that is an emissive volume: the volume's grid determines where it
+/// emits.
 struct EmissiveVolumeDesc {
     std::size_t volume = 0;  ///< index in SceneDesc::volumes
     EmissionDesc emission;
@@ -119,7 +120,7 @@ struct EmissiveVolumeDesc {
     friend bool operator==(const EmissiveVolumeDesc&, const EmissiveVolumeDesc&) = default;
 };
 
-/// A lamp: a point, one with an extent, a sun, or the light of a volume.
+/// A lamp: a point, one with an extent, a sun, the sky, or an emissive volume.
 struct LampDesc {
     std::string name;                      ///< of its layers; unique in the scene
     Point3 position;                       ///< in its frame [m]
@@ -127,10 +128,10 @@ struct LampDesc {
     std::optional<LampExtentDesc> extent;  ///< none: it is a point
     /// Set for a sun, which has no position, no extent and no profile; its frame is the world.
     std::optional<SunDesc> sun;
-    /// Set for the light of the sky, which comes from all sides; `sun` is then set, too.
+    /// Set for the light of the sky, which comes from all directions; `sun` is then set, too.
     std::shared_ptr<const SkyDesc> sky;
-    /// Set for the light of a volume, which shines in all directions from where the volume's grid
-    /// says, in the world: `position` means nothing, and `intensity` is EmissionDesc::per_unit.
+    /// Set for an emissive volume, which emits in all directions from where the volume's grid has
+    /// values, in the world: `position` is unused, and `intensity` is EmissionDesc::per_unit.
     std::optional<EmissiveVolumeDesc> emissive_volume;
     LampProfileDesc profile;
     // At most one of the next three is set; none for a profile that is absolute.
@@ -162,7 +163,7 @@ LampSpectrumDesc read_spectrum(const ConfigValue& value, const SceneContext& con
 /// `lamps`.
 std::vector<LampDesc> read_lamps(const ConfigValue& value, const SceneContext& context);
 
-/// Appends the light of volumes to a scene's lamps. Throws InputError for a name that is taken.
+/// Appends the emissive volumes to a scene's lamps. Throws InputError for a name that is taken.
 void append_emissions(const std::vector<VolumeDesc>& volumes, std::vector<LampDesc>& lamps);
 
 }  // namespace uw

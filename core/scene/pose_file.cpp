@@ -29,9 +29,9 @@ struct PoseLine {
     /// A finite number; `name` is the column's.
     double parsed(std::string_view cell, std::string_view name) const;
     /// A time to the nearest nanosecond [ns], of which one of its units has 10^places. `expected`
-    /// says what it is; `mend` what a number that is too large for a time may be instead.
+    /// says what it is; `hint` what a number that is too large for a time may be instead.
     std::int64_t stamp(std::string_view cell, int places, std::string_view expected,
-                       std::string_view mend) const;
+                       std::string_view hint) const;
     /// The rotation of a quaternion of length 1 to within 1e-3.
     Rotation rotation(double w, double x, double y, double z) const;
 };
@@ -142,13 +142,13 @@ double PoseLine::parsed(std::string_view cell, std::string_view name) const {
 }
 
 std::int64_t PoseLine::stamp(std::string_view cell, int places, std::string_view expected,
-                             std::string_view mend) const {
+                             std::string_view hint) const {
     double value = 0;
     const bool is_number = parse_number(cell, value) == NumberText::number;
     const auto units = is_number ? decimal_in_units(cell, places) : std::nullopt;
     if (!units)
         fail(fmt::format("{}, found '{}'{}{}", expected, printable(cell),
-                         is_number ? ", which is after the year 2116" : "", is_number ? mend : ""));
+                         is_number ? ", which is after the year 2116" : "", is_number ? hint : ""));
     return *units;
 }
 

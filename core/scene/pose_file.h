@@ -18,7 +18,7 @@ struct PoseFile {
     /// it has none: those at the end of the images' names if these are otherwise the same, else
     /// their places from 0, in the order of the names.
     std::vector<TimedPose> poses;      // at least one, strictly ascending
-    bool counts_frames = false;        // as said above
+    bool counts_frames = false;        // times are frame numbers
     std::vector<std::int64_t> stamps;  // the poses' own times [ns]; empty if they count frames
     std::string hash;                  // of the file's text
 };
@@ -63,17 +63,17 @@ Pose placed(const Pose& pose, const TrajectoryDesc& desc);
 
 /// Reads the file of poses that `desc` names, if it names any, and makes its trajectory; poses
 /// without times are those of the frames, `fps` per second. Returns the hash of the file's text;
-/// empty for keyframes. `doubt` becomes what suggests that the file's times are not of the unit
-/// that its format has, such as frame numbers; empty where nothing does. Throws as read_pose_file
-/// does, and InputError for a start from which poses cannot be told apart, and for poses at the
-/// same place that a constant speed leaves no time for.
+/// empty for keyframes. `doubt` becomes a remark if the file's times seem not to have the unit
+/// of its format, such as frame numbers; else empty. Throws as read_pose_file
+/// does, and InputError for a start at which poses cannot be distinguished, and for poses at the
+/// same position, between which a constant speed allows no time.
 std::string load_trajectory(TrajectoryDesc& desc, double fps, std::string& doubt);
 
 /// A time in whole nanoseconds; none after the year 2116.
 std::optional<std::int64_t> nanoseconds(double seconds);
 
-/// What the clock of a file of poses says [ns]: whole numbers where seconds as doubles resolve 200
-/// ns of a time that is counted from 1970.
+/// The clock of a file of poses [ns]. Whole numbers are used because seconds as doubles resolve
+/// only 200 ns of a time that is counted from 1970.
 struct PoseClock {
     std::int64_t zero = 0;             // at the scene's time 0
     std::vector<std::int64_t> stamps;  // at each pose; empty where a pace gives them other times

@@ -36,8 +36,8 @@ struct ColourDesc {
     SourceLocation where = "render.response";
 };
 
-/// What pictures of the image are seen through: a view of an OpenColorIO config. Words are empty
-/// where the config's own choice is wanted.
+/// The view of an OpenColorIO config through which pictures of the image are made. Empty words mean
+/// the config's own choice.
 struct ViewDesc {
     std::filesystem::path config;  ///< empty: that of the environment variable OCIO
     std::string display, view;
@@ -52,12 +52,13 @@ struct ViewDesc {
 struct RenderDesc {
     enum class Integrator { volume, planes, reference, path };
     Integrator integrator = Integrator::volume;
-    /// Single: what the water scatters once and surfaces reflect once. Multiple: all light.
+    /// Single: light that the water scatters once and light that surfaces reflect once. Multiple:
+    /// all light.
     enum class Scattering { single, multiple };
     std::optional<Scattering> scattering;  ///< if omitted, that of the integrator (scattering_of)
     SourceLocation scattering_where = "render.scattering";
     PlanesDesc planes;
-    /// The quantity that the image holds; all but radiance require the camera's lens.
+    /// The quantity that the image contains; all but radiance require the camera's lens.
     enum class Output { radiance, sensor_irradiance, paper };
     Output output = Output::radiance;
     SourceLocation output_where;
@@ -68,8 +69,8 @@ struct RenderDesc {
     std::optional<int> samples;
     double shutter = 0;  ///< exposure time [s], 0..60, around the frame's; 0: no motion blur
     double fps = 25;     ///< frames per second: frame n is at n/fps, > 0
-    /// What the frames' times are: those of `fps`, or frame n is at the time of pose n of the
-    /// camera's or the rig's trajectory.
+    /// The times of frames: by `fps`, or frame n is at the time of pose n of the camera's or the
+    /// rig's trajectory.
     enum class Times { fps, trajectory };
     Times times = Times::fps;
     SourceLocation times_where = "render.times";

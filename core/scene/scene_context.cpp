@@ -91,10 +91,10 @@ void fail_not_in_memory(const ConfigValue& value, const std::string& name) {
                     printable(name)));
 }
 
-std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend) {
+std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view hint) {
     constexpr std::string_view k_allowed =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
-    std::string name = value.text(mend);
+    std::string name = value.text(hint);
     if (name.find_first_not_of(k_allowed) != std::string::npos || name.size() > k_longest_name) {
         value.fail(
             fmt::format("'{}' cannot be part of {}; use only letters, digits, _ and -, at "

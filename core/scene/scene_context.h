@@ -25,8 +25,8 @@ struct WavesDesc;  // core/scene/waves_desc.h
 struct WaterSurfaceDesc {
     Point3 point;             ///< on it, world [m]
     Vector3 normal{0, 1, 0};  ///< out of the water, world, unit
-    /// The water's refractive index against that of the air. None: light meets nothing there, and
-    /// suns are what is left of them below.
+    /// The water's refractive index relative to that of the air. None: the surface neither refracts
+    /// nor reflects, and suns are given as they are below it.
     std::optional<double> n{};
     std::shared_ptr<const WavesDesc> waves{};  ///< null: calm; only with `n`
 
@@ -37,8 +37,8 @@ struct LoadedGrid;    // media/volumes/loaded_grid.h
 struct TriangleMesh;  // core/geometry/mesh.h
 struct SpeciesDesc;   // core/scene/species_desc.h
 
-/// What a scene refers to by names instead of reading it from files: grids of volumes as `array`,
-/// meshes of geometry as `mesh`.
+/// Data that a scene refers to by name instead of reading it from files: grids of volumes as
+/// `array`, meshes of geometry as `mesh`.
 struct SceneArrays {
     std::map<std::string, std::shared_ptr<const LoadedGrid>> grids;
     std::map<std::string, std::shared_ptr<const TriangleMesh>> meshes;
@@ -94,7 +94,7 @@ struct NamedFile {
 };
 
 /// Shared by the readers of a scene's sections. Each reads and fully checks one section, and throws
-/// InputError "file:line:column: key path: what; mend" for invalid input.
+/// InputError "file:line:column: key path: what; hint" for invalid input.
 struct SceneContext {
     std::filesystem::path folder;        // of the scene file; file names are relative to it
     std::size_t band_count = 0;          // of water.bands, which is read first
@@ -128,11 +128,11 @@ std::filesystem::path read_existing_file_or_sequence(const ConfigValue& value,
                                                      const SceneContext& context,
                                                      bool& is_sequence);
 
-/// Fails: nothing in memory is called so.
+/// Throws InputError: nothing in memory has this name.
 [[noreturn]] void fail_not_in_memory(const ConfigValue& value, const std::string& name);
 
-/// What `value` names among `known`, null: nothing is, as the scene has files alone. Throws
-/// InputError if it is not there.
+/// The element of `known` that `value` names. `known` is null if the scene has only files. Throws
+/// InputError if there is no such element.
 template <class T>
 std::shared_ptr<const T> read_in_memory(
     const ConfigValue& value, const std::map<std::string, std::shared_ptr<const T>>* known) {
@@ -143,6 +143,6 @@ std::shared_ptr<const T> read_in_memory(
 }
 
 /// A name that becomes part of `of` ("a layer's name"): up to 64 letters, digits, _ and -.
-std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view mend);
+std::string read_short_name(const ConfigValue& value, std::string_view of, std::string_view hint);
 
 }  // namespace uw

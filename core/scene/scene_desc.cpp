@@ -44,8 +44,8 @@ void check_version(const ConfigValue& scene) {
                           version->description()));
 }
 
-/// Whatever a glTF file is to provide must be missing in the scene, and whatever is missing must be
-/// provided.
+/// Checks that the scene lacks what a glTF file is to provide, and that a file provides what it
+/// lacks.
 void check_gltf_imports(const SceneDesc& desc) {
     const CameraDesc& camera = desc.camera;
     const SourceLocation* source = nullptr;
@@ -83,12 +83,12 @@ void check_gltf_imports(const SceneDesc& desc) {
 }
 
 void read_camera_or_rig(ConfigMap& map, SceneContext& context, SceneDesc& desc) {
-    constexpr auto k_mend = "give camera: {resolution: [W, H], intrinsics: {fov_x: 60}}";
+    constexpr auto k_hint = "give camera: {resolution: [W, H], intrinsics: {fov_x: 60}}";
     const auto cameras = map.find("cameras");
     const auto rig = map.find("rig");
     if (!cameras) {
         if (rig) rig->fail("a rig has named cameras; list them under cameras, not camera");
-        desc.camera = read_camera(map.require("camera", k_mend), context);
+        desc.camera = read_camera(map.require("camera", k_hint), context);
         return;
     }
     if (const auto camera = map.find("camera"))
@@ -110,7 +110,7 @@ void check_lenses(const SceneDesc& desc) {
                          "focal_length: 0.0085}, or write output: radiance");
 }
 
-/// What a sensor's pitch and the lens may differ by unnoticed: data sheets round both.
+/// The tolerated difference between a sensor's pitch and the lens, as data sheets round both.
 constexpr double k_pitch_tolerance = 0.05;
 
 void check_sensor(const SceneDesc& scene, const CameraDesc& camera) {
@@ -200,7 +200,7 @@ void complete_ports(SceneDesc& scene) {
     for (RigCameraDesc& entry : scene.cameras) complete(entry.camera);
 }
 
-/// Blur is the mean over more rays than edges need.
+/// Averaging blur takes more rays than antialiasing edges.
 void refine_blur(SceneDesc& desc) {
     constexpr int k_samples = 64;
     const auto blurs = [](const CameraDesc& camera) {
@@ -233,8 +233,8 @@ void open_shutter(SceneDesc& desc) {
     }
 }
 
-/// What the scene itself is made of: an image of a variation is that of the same scene without the
-/// section.
+/// The tree of the scene itself, so that an image of a variation is that of the same scene without
+/// the section.
 ConfigNode without_variations(ConfigNode root) {
     std::erase_if(root.entries, [](const auto& entry) { return entry.key == k_variations_key; });
     return root;

@@ -33,8 +33,8 @@ struct ImageChoice {
     friend bool operator==(const ImageChoice&, const ImageChoice&) = default;
 };
 
-/// What a scene says, section by section. As it is read it is about all of a file's images: about
-/// every frame, camera and moment. That of one image is made of it (render/image_scene.h).
+/// A scene, section by section. As read from a file it describes all images: every frame, camera
+/// and moment. The scene of one image is made from it (render/image_scene.h).
 struct SceneDesc {
     std::filesystem::path file;          ///< the scene file itself
     CameraDesc camera;                   ///< of a rig, its first, or the one that sees the image
@@ -55,17 +55,17 @@ struct SceneDesc {
 
 /// Reads a scene file (version 1, docs/scene-file.md) and checks all of it.
 /// `overrides` are "key.path=value" as given to --set, applied in order before checking.
-/// Throws InputError with one line "file:line:column: key path: what; mend", IoError if the file
+/// Throws InputError with one line "file:line:column: key path: what; hint", IoError if the file
 /// cannot be read, UsageError for an override that is not of that form.
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
-/// The same for a scene whose text is at hand, such as one that is being edited: `file` is where it
-/// belongs, for messages and the names of files, and is not read.
+/// The same for a scene whose text is in memory, such as one that is being edited: `file`, by which
+/// messages and file names are resolved, is not read.
 SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& file,
                           const std::vector<std::string>& overrides = {});
 
-/// The section of a scene that says how others are made of it. It is no part of the scene itself:
-/// it is passed over here, and read by core/scene/variations.
+/// The section of a scene that describes its variations. It is not part of the scene itself: it is
+/// ignored here, and read by core/scene/variations.
 inline constexpr std::string_view k_variations_key = "variations";
 
 /// In two steps: the tree of a scene with its overrides, and the scene that it describes, which may

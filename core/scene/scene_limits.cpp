@@ -47,17 +47,17 @@ class Checked {
 
     // Also for NaN.
     void at_most(double limit, std::string_view name, std::initializer_list<double> values,
-                 std::string_view mend) const {
+                 std::string_view hint) const {
         for (const double value : values)
-            if (!(std::abs(value) <= limit)) fail(name, value, limit, mend);
+            if (!(std::abs(value) <= limit)) fail(name, value, limit, hint);
     }
-    /// Neither so large nor, unless it is 0, so small that nothing real is meant.
+    /// Checks that a number is neither too large nor, unless it is 0, too small to be realistic.
     void number(std::string_view name, double value) const {
         constexpr std::string_view k_mend = "check its unit";
         at_most(k_max_quantity, name, {value}, k_mend);
         if (value != 0 && std::abs(value) < k_min_number)
             fail(
-                fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_min_number, k_mend));
+                fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_min_number, k_hint));
     }
     void place(std::string_view name, const Vector3& v) const {
         at_most(k_max_coordinate, name, {v.x, v.y, v.z},
@@ -74,8 +74,8 @@ class Checked {
     }
     template <class Values>
     void all_at_most(double limit, std::string_view name, const Values& values,
-                     std::string_view mend) const {
-        for (const double value : values) at_most(limit, name, {value}, mend);
+                     std::string_view hint) const {
+        for (const double value : values) at_most(limit, name, {value}, hint);
     }
     [[noreturn]] void fail(std::string_view what) const {
         throw InputError(fmt::format("{}: {}", where_, what));
@@ -83,9 +83,9 @@ class Checked {
 
   private:
     [[noreturn]] void fail(std::string_view name, double value, double limit,
-                           std::string_view mend) const {
+                           std::string_view hint) const {
         if (!std::isfinite(value)) fail(fmt::format("its {} is not a finite number", name));
-        fail(fmt::format("its {} of {:g} is beyond {:g}; {}", name, value, limit, mend));
+        fail(fmt::format("its {} of {:g} is beyond {:g}; {}", name, value, limit, hint));
     }
 
     const SourceLocation& where_;
@@ -183,10 +183,10 @@ void check(const LampDesc& lamp) {
         checked.length("height", lamp.extent->height);
         checked.length("radius", lamp.extent->radius);
     }
-    constexpr auto k_mend = "give W/sr, W or lm";
-    if (lamp.intensity) checked.all_at_most(k_max_brightness, "intensity", *lamp.intensity, k_mend);
-    if (lamp.power) checked.all_at_most(k_max_brightness, "power", *lamp.power, k_mend);
-    if (lamp.lumens) checked.at_most(k_max_brightness, "flux", {*lamp.lumens}, k_mend);
+    constexpr auto k_hint = "give W/sr, W or lm";
+    if (lamp.intensity) checked.all_at_most(k_max_brightness, "intensity", *lamp.intensity, k_hint);
+    if (lamp.power) checked.all_at_most(k_max_brightness, "power", *lamp.power, k_hint);
+    if (lamp.lumens) checked.at_most(k_max_brightness, "flux", {*lamp.lumens}, k_hint);
 }
 
 void check(const GeometryDesc& geometry) {
@@ -206,14 +206,14 @@ void check(const VolumeDesc& volume) {
     checked.matrix("transform", volume.world_from_upright.linear());
     for (const GridMappingDesc& grid : volume.grids) {
         const Checked mapping(grid.where);
-        constexpr auto k_mend = "values are in ppm, coefficients in 1/m per unit";
-        mapping.at_most(k_max_per_unit, "concentration", {grid.small_ppm, grid.large_ppm}, k_mend);
+        constexpr auto k_hint = "values are in ppm, coefficients in 1/m per unit";
+        mapping.at_most(k_max_per_unit, "concentration", {grid.small_ppm, grid.large_ppm}, k_hint);
         for (const SpeciesAmount& amount : grid.amounts)
             if (amount.unit != SpeciesAmount::Unit::number)
-                mapping.at_most(k_max_per_unit, "concentration", {amount.amount}, k_mend);
+                mapping.at_most(k_max_per_unit, "concentration", {amount.amount}, k_hint);
         if (!grid.optics) continue;
-        mapping.all_at_most(k_max_per_unit, "absorption", grid.optics->absorption, k_mend);
-        mapping.all_at_most(k_max_per_unit, "scattering", grid.optics->scattering, k_mend);
+        mapping.all_at_most(k_max_per_unit, "absorption", grid.optics->absorption, k_hint);
+        mapping.all_at_most(k_max_per_unit, "scattering", grid.optics->scattering, k_hint);
     }
 }
 

@@ -9,8 +9,8 @@ namespace uw {
 /// such numbers are still far from its largest, 3e38.
 inline constexpr double k_max_coordinate = 1e7;
 
-/// Throws InputError "<where>: <what>; <mend>" for the first quantity of a resolved scene, wherever
-/// it comes from, that is not finite or beyond what rays can be traced with: the limits above. What
-/// the files of surfaces and volumes hold is checked where it is loaded.
+/// Throws InputError "<where>: <what>; <hint>" for the first quantity of a resolved scene, wherever
+/// it comes from, that is not finite or exceeds the limits above, within which rays can be traced.
+/// The contents of surface and volume files are checked when they are loaded.
 void check_limits(const SceneDesc& scene);
 }  // namespace uw

@@ -30,9 +30,9 @@ PerBand read_efficiencies(const ConfigValue& value, const SceneContext& context)
     return values;
 }
 
-/// Three bands are what red, green and blue pixels see, each its own.
-void share_out_bands(const ConfigValue& value, SensorMosaic mosaic, const SceneContext& context,
-                     QuantumEfficiencyDesc& desc) {
+/// With three bands, red, green and blue pixels respond to one band each.
+void assign_bands(const ConfigValue& value, SensorMosaic mosaic, const SceneContext& context,
+                  QuantumEfficiencyDesc& desc) {
     const PerBand values = read_efficiencies(value, context);
     if (mosaic == SensorMosaic::mono) {
         desc.values[0] = values;
@@ -61,9 +61,9 @@ void read_efficiency_map(const ConfigValue& value, SensorMosaic mosaic, const Sc
         const auto per = map.find("per");
         if (per) desc.is_per_power = per->choice(k_units);
         if (const auto peak = map.find("peak")) {
-            constexpr auto k_mend = "give the greatest photoelectrons per photon, such as 0.6";
-            desc.peak = peak->within(0, 1, k_mend);
-            peak->positive(k_mend);
+            constexpr auto k_hint = "give the greatest photoelectrons per photon, such as 0.6";
+            desc.peak = peak->within(0, 1, k_hint);
+            peak->positive(k_hint);
         }
         if (desc.is_per_power && !desc.peak)
             per->fail(
@@ -88,7 +88,7 @@ QuantumEfficiencyDesc read_efficiency(const ConfigValue& value, SensorMosaic mos
     else if (value.node().kind == ConfigNode::Kind::map)
         read_efficiency_map(value, mosaic, context, desc);
     else
-        share_out_bands(value, mosaic, context, desc);
+        assign_bands(value, mosaic, context, desc);
     return desc;
 }
 
@@ -101,9 +101,9 @@ ResponseCurveDesc read_curve(const ConfigValue& value, const SceneContext& conte
         curve.file = read_existing_file(value, context);
     } else if (value.node().kind == ConfigNode::Kind::map) {
         ConfigMap map(value, {"gamma"}, "write {gamma: 2.2}");
-        constexpr auto k_mend = "give the exponent, such as 2.2 for value^(1/2.2)";
+        constexpr auto k_hint = "give the exponent, such as 2.2 for value^(1/2.2)";
         curve.type = Type::gamma;
-        curve.gamma = map.require("gamma", k_mend).within(0.1, 10, k_mend);
+        curve.gamma = map.require("gamma", k_hint).within(0.1, 10, k_hint);
     } else {
         constexpr std::array<std::pair<std::string_view, Type>, 2> k_types{
             {{"linear", Type::linear}, {"srgb", Type::srgb}}};
@@ -114,7 +114,7 @@ ResponseCurveDesc read_curve(const ConfigValue& value, const SceneContext& conte
 
 std::variant<DevelopmentDesc::Gains, DevelopmentDesc::GreyWorld> read_white_balance(
     const ConfigValue& value) {
-    constexpr auto k_mend = "give the gains of red, green and blue, such as [1.9, 1, 1.6]";
+    constexpr auto k_hint = "give the gains of red, green and blue, such as [1.9, 1, 1.6]";
     if (value.node().kind == ConfigNode::Kind::scalar) {
         constexpr std::array<std::pair<std::string_view, bool>, 2> k_words{
             {{"none", false}, {"grey-world", true}}};
@@ -122,8 +122,8 @@ std::variant<DevelopmentDesc::Gains, DevelopmentDesc::GreyWorld> read_white_bala
         return DevelopmentDesc::Gains{1, 1, 1};
     }
     DevelopmentDesc::Gains gains{};
-    const std::vector<ConfigValue> numbers = value.list_of(3, k_mend);
-    for (std::size_t c = 0; c < 3; ++c) gains[c] = numbers[c].positive(k_mend);
+    const std::vector<ConfigValue> numbers = value.list_of(3, k_hint);
+    for (std::size_t c = 0; c < 3; ++c) gains[c] = numbers[c].positive(k_hint);
     return gains;
 }
 
@@ -216,9 +216,9 @@ SensorDesc read_sensor(const ConfigValue& value, const SceneContext& context) {
     SensorDesc sensor;
     sensor.where = value.location();
     if (const auto entry = map.find("exposure")) {
-        constexpr auto k_mend = "give the exposure time in seconds, such as 0.01";
-        sensor.exposure = entry->positive(k_mend);
-        entry->within(0, 3600, k_mend);
+        constexpr auto k_hint = "give the exposure time in seconds, such as 0.01";
+        sensor.exposure = entry->positive(k_hint);
+        entry->within(0, 3600, k_hint);
     }
     if (const auto entry = map.find("pixel_pitch")) {
         sensor.pixel_pitch = entry->positive("give metres, such as 3.45e-6");

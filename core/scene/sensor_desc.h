@@ -17,8 +17,8 @@ namespace uw {
 
 /// A camera's sensor as inert data, by the terms of EMVA standard 1288 (docs/camera-image.md).
 
-/// Which colours the pixels of a sensor see: all of them all light (mono), each one of three by the
-/// pattern of a Bayer filter, named by its first two rows, or each all three.
+/// The colours to which the pixels of a sensor respond: all light (mono), one of three by a Bayer
+/// pattern, named by its first two rows, or all three.
 enum class SensorMosaic : std::uint8_t { mono, rggb, bggr, grbg, gbrg, three };
 
 /// Their names in scene files.
@@ -62,7 +62,7 @@ struct ResponseCurveDesc {
     SourceLocation where;
 };
 
-/// What a camera makes of the numbers of its sensor before they are stored.
+/// The processing of the sensor's numbers in the camera before they are stored.
 struct DevelopmentDesc {
     enum class Format : std::uint8_t { png, jpeg };
     /// Gains of red, green and blue that make each image's mean grey.
@@ -71,7 +71,7 @@ struct DevelopmentDesc {
     };
     using Gains = std::array<double, 3>;
 
-    bool is_raw = true;  ///< none of what follows but the format: the numbers as they are
+    bool is_raw = true;  ///< the numbers are stored as they are: only the format below applies
     bool demosaic = true;
     std::variant<Gains, GreyWorld> white_balance = Gains{1, 1, 1};
     ResponseCurveDesc response;

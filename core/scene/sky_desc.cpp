@@ -179,8 +179,8 @@ void read_north(ConfigMap& map, SkyDesc& sky) {
 }
 
 void read_clear(ConfigMap& map, const SceneContext& context, SkyDesc& sky) {
-    constexpr auto k_mend = "say where the sun stands, such as {azimuth: 180, elevation: 40}";
-    sky.sun = read_sun_position(map.require("sun", k_mend), context);
+    constexpr auto k_hint = "say where the sun stands, such as {azimuth: 180, elevation: 40}";
+    sky.sun = read_sun_position(map.require("sun", k_hint), context);
     if (const auto turbidity = map.find("turbidity"))
         sky.turbidity = turbidity->within(
             2, 10, "give the air's turbidity: 2 is very clear, 3 clear, 6 hazy, 10 foggy");

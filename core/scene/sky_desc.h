@@ -13,7 +13,7 @@
 
 namespace uw {
 
-/// The sun by its place in the sky.
+/// The sun by its position in the sky.
 struct SunAnglesDesc {
     double azimuth = 0;     ///< clockwise from north, seen from above [degrees], -360..360
     double elevation = 90;  ///< of its centre above the horizon [degrees], 0..90
@@ -21,7 +21,7 @@ struct SunAnglesDesc {
     friend bool operator==(const SunAnglesDesc&, const SunAnglesDesc&) = default;
 };
 
-/// The sun by its light.
+/// The sun by the direction of its light.
 struct SunDirectionDesc {
     Vector3 direction;  ///< in which its light travels in the air, world, unit
 
@@ -70,7 +70,7 @@ struct SkyDesc {
     /// Where north is, in the world, of any slope but vertical; none: the world's -z, or
     /// y where up is within 45 degrees of the world's z axis.
     std::optional<Vector3> north;
-    int samples = 32;  ///< how many directions stand for it, 1..1024
+    int samples = 32;  ///< number of directions that represent it, 1..1024
     SourceLocation where;
 };
 

@@ -39,7 +39,7 @@ std::string length_text(double metres) {
 }  // namespace
 
 double read_diameter(const ConfigValue& value, double least, double greatest) {
-    constexpr auto k_mend = "give a length with its unit, such as 0.2 mm";
+    constexpr auto k_hint = "give a length with its unit, such as 0.2 mm";
     constexpr std::array<std::pair<std::string_view, double>, 7> k_units{{{"nm", 1e-9},
                                                                           {"um", 1e-6},
                                                                           {"µm", 1e-6},
@@ -52,12 +52,12 @@ double read_diameter(const ConfigValue& value, double least, double greatest) {
                                              ? number_with_unit(node.scalar, k_units)
                                              : std::nullopt;
     if (!metres)
-        value.fail(fmt::format("expected a diameter, found {}; {}", node.description(), k_mend));
-    // Rounding of the units.
+        value.fail(fmt::format("expected a diameter, found {}; {}", node.description(), k_hint));
+    // Tolerates the rounding of units.
     constexpr double k_slack = 1e-9;
     if (!(*metres >= least * (1 - k_slack)) || !(*metres <= greatest * (1 + k_slack)))
         value.fail(fmt::format("must be from {} to {}, found {:g} m; {}", length_text(least),
-                               length_text(greatest), *metres, k_mend));
+                               length_text(greatest), *metres, k_hint));
     return *metres;
 }
 
@@ -126,23 +126,23 @@ SizesDesc read_sizes(const ConfigValue& value, const SceneContext& context) {
 }
 
 ParticleIndexDesc read_index(const ConfigValue& value, const SceneContext& context) {
-    constexpr auto k_mend =
+    constexpr auto k_hint =
         "give the refractive index against that of water, such as 1.15, {n: 1.15, k: 0.001}, or "
         "{file: index.csv}";
     ParticleIndexDesc index;
-    const auto within = [&](const ConfigValue& n) { return n.within(0.3, 5, k_mend); };
+    const auto within = [&](const ConfigValue& n) { return n.within(0.3, 5, k_hint); };
     if (value.node().kind != ConfigNode::Kind::map) {
         index.n = within(value);
         return index;
     }
-    ConfigMap map(value, {"n", "k", "file"}, k_mend);
+    ConfigMap map(value, {"n", "k", "file"}, k_hint);
     if (const auto file = map.find("file")) {
         index.file = read_existing_file(*file, context);
         map.finish("an index with 'file'");
         return index;
     }
-    index.n = within(map.require("n", k_mend));
-    if (const auto k = map.find("k")) index.k = k->within(0, 5, k_mend);
+    index.n = within(map.require("n", k_hint));
+    if (const auto k = map.find("k")) index.k = k->within(0, 5, k_hint);
     return index;
 }
 
@@ -201,14 +201,14 @@ void read_sample(ConfigMap& map, const SceneContext& context, SpeciesDesc& speci
     }
     const auto absorption = map.find("absorption");
     if (!absorption) return;
-    constexpr auto k_mend =
+    constexpr auto k_hint =
         "give the particles' absorption in the sample in 1/m, or {file: absorption.csv}";
     if (absorption->node().kind != ConfigNode::Kind::map) {
-        vsf.absorption = absorption->within(0, 1e6, k_mend);
+        vsf.absorption = absorption->within(0, 1e6, k_hint);
         return;
     }
-    ConfigMap of_file(*absorption, {"file"}, k_mend);
-    vsf.absorption_file = read_existing_file(of_file.require("file", k_mend), context);
+    ConfigMap of_file(*absorption, {"file"}, k_hint);
+    vsf.absorption_file = read_existing_file(of_file.require("file", k_hint), context);
 }
 
 }  // namespace
@@ -320,7 +320,7 @@ std::optional<SpeciesAmount> parse_amount(std::string_view text) {
         Unit unit;
         double factor;
     };
-    // A bare number goes with the first.
+    // A bare number belongs to the first unit.
     constexpr std::array<Choice, 9> k_units{{{"ppm", Unit::own, 1},
                                              {"mg/l", Unit::grams, 1},
                                              {"mg/L", Unit::grams, 1},

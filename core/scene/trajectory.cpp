@@ -26,8 +26,8 @@ Rotation normalised(const Rotation& q) {
 }
 
 Rotation rotation_of(const Matrix3& m) {
-    // Four times the products of the components with one another; the largest square comes first,
-    // so that nothing small is divided by.
+    // Four times the products of the components; divides by the component with the largest square,
+    // which is not small.
     const double trace = m[0][0] + m[1][1] + m[2][2];
     const double yz = m[1][2] - m[2][1], zx = m[2][0] - m[0][2], xy = m[0][1] - m[1][0];
     const std::array<double, 4> squares{1 + trace, 1 + 2 * m[0][0] - trace, 1 + 2 * m[1][1] - trace,
@@ -51,8 +51,8 @@ Rotation rotation_of(const Matrix3& m) {
 Rotation rotation_by(const Vector3& v) {
     const double angle = glm::length(v);
     // sin(angle/2)/angle; below the limit its series is exact to rounding.
-    const double share = angle < 1e-4 ? 0.5 - angle * angle / 48 : std::sin(angle / 2) / angle;
-    return {std::cos(angle / 2), share * v.x, share * v.y, share * v.z};
+    const double factor = angle < 1e-4 ? 0.5 - angle * angle / 48 : std::sin(angle / 2) / angle;
+    return {std::cos(angle / 2), factor * v.x, factor * v.y, factor * v.z};
 }
 
 Vector3 rotation_vector(const Rotation& q) {
@@ -140,8 +140,8 @@ Rotation RotationSpline::at(const std::vector<double>& knots, double u) const {
                       rotation_by(third * (t * t * t)));
 }
 
-Rotation turned(const Rotation& a, const Rotation& b, double share) {
-    return normalised(a * rotation_by(share * turn_between(a, b)));
+Rotation turned(const Rotation& a, const Rotation& b, double fraction) {
+    return normalised(a * rotation_by(fraction * turn_between(a, b)));
 }
 
 namespace {
@@ -216,7 +216,7 @@ Vector3 Trajectory::velocity(double u) const {
     return (poses_[span.first + 1].position - poses_[span.first].position) / span.width;
 }
 
-// Both within one span, whose velocity is smooth; at its ends the velocity is that of the span.
+// Both lie within one span, whose velocity is smooth; at its ends the velocity is that of the span.
 double Trajectory::length_between(double u0, double u1) const {
     double length = 0;
     const double step = (u1 - u0) / k_parts;
@@ -227,7 +227,7 @@ double Trajectory::length_between(double u0, double u1) const {
     return length;
 }
 
-// Where on the path its length from the beginning is `length`: by bisection and Newton's method.
+// Finds where the arc length from the beginning is `length`, by bisection and Newton's method.
 double Trajectory::place_at_length(double length) const {
     const KnotSpan span = span_of(lengths_, length);
     const double begin = knots_[span.first];
@@ -265,7 +265,7 @@ Pose Trajectory::at_or_beyond(double time) const {
     const double nearest = std::clamp(time, first_time(), last_time());
     if (time == nearest) return at(time);
     const Pose end = at(nearest), within = at(2 * nearest - time);
-    if (within == end) return end;  // to the bit: it stands still
+    if (within == end) return end;  // bit-exact: it stands still
     return {end.position + (end.position - within.position),
             end.rotation * within.rotation.inverse() * end.rotation};
 }

@@ -24,11 +24,11 @@ struct Rotation {
     friend bool operator==(const Rotation&, const Rotation&) = default;
 };
 
-/// The rotation by a rotation matrix (Shepperd 1978), or, of one that is off by rounding, one as
-/// close.
+/// The rotation of a rotation matrix (Shepperd 1978); for one with rounding errors, a rotation as
+/// close to it.
 Rotation rotation_of(const Matrix3& matrix);
 
-/// The rotation of any quaternion but 0, brought to length 1.
+/// The rotation of any quaternion but 0, normalised to length 1.
 Rotation normalised(const Rotation& q);
 
 /// The rotation about the axis of `v` by its length [rad].
@@ -37,7 +37,7 @@ Rotation rotation_by(const Vector3& v);
 /// The shortest `v` for which rotation_by(v) is `rotation`: at most pi long.
 Vector3 rotation_vector(const Rotation& rotation);
 
-/// Where a body is: the rigid map from its space to another.
+/// The pose of a body: the rigid map from its space to another.
 struct Pose {
     Point3 position;
     Rotation rotation;
@@ -52,7 +52,7 @@ inline Pose pose_of(const Affine& rigid) {
     return {at_origin_plus(rigid.offset()), rotation_of(rigid.linear())};
 }
 
-/// Where a body is at a time [s].
+/// The pose of a body at a time [s].
 struct TimedPose {
     double time = 0;
     Pose pose;
@@ -62,7 +62,7 @@ struct TimedPose {
 
 /// A place between two of a spline's knots.
 struct KnotSpan {
-    std::size_t first = 0;  // the knot before; of the last place, that before the last knot
+    std::size_t first = 0;  // the knot before; for the last place, the one before the last knot
     double width = 0;       // between the knots
     double fraction = 0;    // of the distance to the next knot, 0 to 1
 };
@@ -111,8 +111,8 @@ class RotationSpline {
     std::vector<Vector3> velocities_;  // angular, in the body's axes, per unit of the parameter
 };
 
-/// From `a` to `b`, the shorter way round, at a steady rate (Shoemake's slerp): `share` 0 to 1.
-Rotation turned(const Rotation& a, const Rotation& b, double share);
+/// From `a` to `b`, the shorter way round, at a steady rate (Shoemake's slerp): `fraction` 0 to 1.
+Rotation turned(const Rotation& a, const Rotation& b, double fraction);
 
 /// How a body moves between the poses of its trajectory.
 enum class Interpolation {
@@ -120,7 +120,7 @@ enum class Interpolation {
     linear,  ///< straight from pose to pose, turning at a steady rate
 };
 
-/// What times a trajectory's poses have.
+/// The times of a trajectory's poses.
 struct Pacing {
     enum class Kind {
         given,     ///< their own
@@ -150,8 +150,8 @@ class Trajectory {
 
     /// The pose at a time [s]; times outside are taken to the nearest end.
     Pose at(double time) const;
-    /// The same, but outside it goes on as it moves at its nearest end: mirrored there in time and
-    /// in space.
+    /// The same, but outside it continues the motion at the nearest end: by point reflection there
+    /// in time and space.
     Pose at_or_beyond(double time) const;
 
     /// The times of the poses that it goes through [s], ascending.

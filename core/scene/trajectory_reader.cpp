@@ -55,12 +55,12 @@ Affine read_look_at(ConfigMap& map, const Point3& position) {
 }
 
 Affine read_matrix(const ConfigValue& value) {
-    constexpr auto k_mend = "give world_from_camera as four rows of four numbers";
+    constexpr auto k_hint = "give world_from_camera as four rows of four numbers";
     double rows[4][4] = {};
-    const std::vector<ConfigValue> row_values = value.list_of(4, k_mend);
+    const std::vector<ConfigValue> row_values = value.list_of(4, k_hint);
     for (std::size_t i = 0; i < 4; ++i) {
-        const std::vector<ConfigValue> numbers = row_values[i].list_of(4, k_mend);
-        for (std::size_t j = 0; j < 4; ++j) rows[i][j] = numbers[j].number(k_mend);
+        const std::vector<ConfigValue> numbers = row_values[i].list_of(4, k_hint);
+        for (std::size_t j = 0; j < 4; ++j) rows[i][j] = numbers[j].number(k_hint);
     }
     for (std::size_t j = 0; j < 4; ++j) {
         if (std::abs(rows[3][j] - (j == 3 ? 1.0 : 0.0)) > k_rigid_tolerance) {
@@ -124,9 +124,9 @@ Affine read_transform(const ConfigValue& value) {
                   "write {scale: 1, rotate: [0, 0, 0], translate: [0, 0, 0]}");
     Vector3 scale(1.0);
     if (const auto entry = map.find("scale")) {
-        constexpr auto k_mend = "give one factor, or one per axis, none of them 0";
-        scale = entry->node().kind == ConfigNode::Kind::sequence ? entry->vector(k_mend)
-                                                                 : Vector3(entry->number(k_mend));
+        constexpr auto k_hint = "give one factor, or one per axis, none of them 0";
+        scale = entry->node().kind == ConfigNode::Kind::sequence ? entry->vector(k_hint)
+                                                                 : Vector3(entry->number(k_hint));
         // smaller factors would make the map's determinant vanish
         if (glm::any(glm::lessThan(glm::abs(scale), Vector3(k_min_scale)))) {
             entry->fail("must not be 0 or closer to 0 than 1e-9; give one factor, or one per axis");
@@ -210,16 +210,16 @@ double read_time(ConfigMap& map, const Pacing& pacing, std::size_t index, std::s
         return 0;
     }
     if (!time && is_first && pacing.kind == Pacing::Kind::speed) return 0;
-    constexpr auto k_mend = "give the keyframe's time in seconds";
-    return map.require("time", k_mend).number(k_mend);
+    constexpr auto k_hint = "give the keyframe's time in seconds";
+    return map.require("time", k_hint).number(k_hint);
 }
 
 void read_keyframes(const ConfigValue& value, bool is_view, TrajectoryDesc& trajectory) {
-    constexpr auto k_mend = "write one '- {time: 0, position: [0, 0, 0], look_at: [0, 0, 1]}' each";
-    const std::vector<ConfigValue> entries = value.list(k_mend);
-    if (entries.empty()) value.fail(fmt::format("is empty; {}", k_mend));
+    constexpr auto k_hint = "write one '- {time: 0, position: [0, 0, 0], look_at: [0, 0, 1]}' each";
+    const std::vector<ConfigValue> entries = value.list(k_hint);
+    if (entries.empty()) value.fail(fmt::format("is empty; {}", k_hint));
     for (const ConfigValue& entry : entries) {
-        ConfigMap map(entry, {"time", "position", "look_at", "up", "rotate", "matrix"}, k_mend);
+        ConfigMap map(entry, {"time", "position", "look_at", "up", "rotate", "matrix"}, k_hint);
         const std::size_t index = trajectory.keyframes.size();
         const double time = read_time(map, trajectory.pacing, index, entries.size());
         trajectory.keyframes.push_back({time, pose_of(read_pose_keys(map, is_view))});
@@ -244,12 +244,12 @@ void read_keyframes(const ConfigValue& value, bool is_view, TrajectoryDesc& traj
 
 TrajectoryDesc read_trajectory(const ConfigValue& value, const SceneContext& context,
                                bool is_view) {
-    constexpr auto k_mend =
+    constexpr auto k_hint =
         "write {file: dive.tum}, or {keyframes: [{time: 0, position: [0, 0, 0], "
         "look_at: [0, 0, 1]}, ...]}";
     ConfigMap map(value,
                   {"file", "format", "start", "transform", "keyframes", "interpolation", "speed"},
-                  k_mend);
+                  k_hint);
     TrajectoryDesc trajectory;
     trajectory.where = value.location();
     if (const auto interpolation = map.find("interpolation")) {
@@ -266,7 +266,7 @@ TrajectoryDesc read_trajectory(const ConfigValue& value, const SceneContext& con
         map.finish("a trajectory with 'keyframes'");
         read_keyframes(*keyframes, is_view, trajectory);
     } else {
-        value.fail(fmt::format("has neither a file nor keyframes; {}", k_mend));
+        value.fail(fmt::format("has neither a file nor keyframes; {}", k_hint));
     }
     return trajectory;
 }

@@ -27,9 +27,9 @@ namespace uw {
 namespace {
 
 /// What messages advise where a distribution is missing.
-constexpr std::string_view k_distribution_mend = "give a distribution, such as {uniform: [0, 1]}";
+constexpr std::string_view k_distribution_hint = "give a distribution, such as {uniform: [0, 1]}";
 
-// Less than 1e-33 of a normal distribution lies beyond.
+// The probability of a normal number beyond this is less than 1e-33.
 constexpr double k_farthest = 12;
 
 /// The probability of a standard normal number above x.
@@ -50,8 +50,8 @@ double normal_quantile(double low, double high, double u) {
     low = std::clamp(low, -k_farthest, k_farthest);
     high = std::clamp(high, -k_farthest, k_farthest);
     const double below = above(-low) + u * normal_probability(low, high);
-    // Halved this often, 24 become 1e-12. What is left undecided hides the last digits of erfc,
-    // which differ between systems: the draws do not.
+    // Halving an interval of 24 this often leaves 1e-12. That is coarser than the last digits of
+    // erfc, which differ between systems, so that the draws are the same everywhere.
     constexpr int k_halvings = 44;
     for (int i = 0; i < k_halvings; ++i) {
         const double middle = 0.5 * (low + high);
@@ -87,9 +87,9 @@ double quantile(const NumberDistribution& distribution, double u) {
 
 namespace {
 
-std::size_t index_of(const Shares& shares, double u) {
-    const auto found = std::ranges::upper_bound(shares.up_to, u);
-    return static_cast<std::size_t>(found - shares.up_to.begin());
+std::size_t index_of(const CumulativeProbabilities& probabilities, double u) {
+    const auto found = std::ranges::upper_bound(probabilities.up_to, u);
+    return static_cast<std::size_t>(found - probabilities.up_to.begin());
 }
 
 struct TextOf {
@@ -100,7 +100,7 @@ struct TextOf {
         return number_text(quantile(distribution, u));
     }
     std::string operator()(const ChoiceOfTexts& choice) const {
-        return choice.texts[index_of(choice.shares, u)];
+        return choice.texts[index_of(choice.probabilities, u)];
     }
 };
 
@@ -128,7 +128,7 @@ std::vector<DrawnValue> draw(const VariationsDesc& variations, int variation) {
         values.push_back({key.key, text_of(key, variations.seed, variation), key.where});
     for (const DrawnRows& together : variations.together) {
         const double u = draw_random(variations.seed, together.keys.front(), 0, variation);
-        const DrawnRows::Row& row = together.rows[index_of(together.shares, u)];
+        const DrawnRows::Row& row = together.rows[index_of(together.probabilities, u)];
         for (std::size_t i = 0; i < row.texts.size(); ++i)
             values.push_back({together.keys[i], row.texts[i], row.where});
     }
@@ -149,12 +149,12 @@ constexpr auto k_kinds =
 
 /// Two numbers, the first below the second.
 std::array<double, 2> interval(const ConfigValue& value) {
-    constexpr auto k_interval_mend = "give [lowest, highest]";
-    const std::vector<ConfigValue> ends = value.list_of(2, k_interval_mend);
-    const std::array<double, 2> numbers{ends[0].number(k_interval_mend),
-                                        ends[1].number(k_interval_mend)};
+    constexpr auto k_interval_hint = "give [lowest, highest]";
+    const std::vector<ConfigValue> ends = value.list_of(2, k_interval_hint);
+    const std::array<double, 2> numbers{ends[0].number(k_interval_hint),
+                                        ends[1].number(k_interval_hint)};
     if (numbers[0] >= numbers[1])
-        value.fail(fmt::format("{} is not below {}; {}", numbers[0], numbers[1], k_interval_mend));
+        value.fail(fmt::format("{} is not below {}; {}", numbers[0], numbers[1], k_interval_hint));
     return numbers;
 }
 
@@ -165,12 +165,12 @@ LogUniformDistribution log_uniform(const ConfigValue& value) {
 }
 
 IntegerDistribution integer(const ConfigValue& value) {
-    constexpr auto k_integer_mend = "give two whole numbers, [lowest, highest]";
+    constexpr auto k_integer_hint = "give two whole numbers, [lowest, highest]";
     interval(value);
-    const std::vector<ConfigValue> ends = value.list_of(2, k_integer_mend);
+    const std::vector<ConfigValue> ends = value.list_of(2, k_integer_hint);
     constexpr int k_largest = std::numeric_limits<int>::max();
-    return {ends[0].integer(-k_largest, k_largest, k_integer_mend),
-            ends[1].integer(-k_largest, k_largest, k_integer_mend)};
+    return {ends[0].integer(-k_largest, k_largest, k_integer_hint),
+            ends[1].integer(-k_largest, k_largest, k_integer_hint)};
 }
 
 NormalDistribution normal(const ConfigValue& value, const std::optional<ConfigValue>& within) {
@@ -188,31 +188,33 @@ NormalDistribution normal(const ConfigValue& value, const std::optional<ConfigVa
     return d;
 }
 
-/// The shares of `count` > 0 things with these weights >= 0, or without any all alike. Throws
+/// The probabilities of `count` > 0 things with these weights >= 0; equal without weights. Throws
 /// InputError at `where` if no weight is above 0.
-Shares shares_of(std::size_t count, std::vector<double> weights, const ConfigValue& where) {
+CumulativeProbabilities probabilities_of(std::size_t count, std::vector<double> weights,
+                                         const ConfigValue& where) {
     if (weights.empty()) weights.assign(count, 1);
-    Shares shares;
-    std::partial_sum(weights.begin(), weights.end(), std::back_inserter(shares.up_to));
-    const double sum = shares.up_to.back();
+    CumulativeProbabilities probabilities;
+    std::partial_sum(weights.begin(), weights.end(), std::back_inserter(probabilities.up_to));
+    const double sum = probabilities.up_to.back();
     if (sum <= 0) where.fail("no weight is above 0; give one that is");
-    for (double& share : shares.up_to) share /= sum;
-    // What has no weight at the end must not be reached by rounding.
-    const double last = shares.up_to.back();
-    for (double& share : shares.up_to)
-        if (share == last) share = 1;
-    return shares;
+    for (double& probability : probabilities.up_to) probability /= sum;
+    // Things without weight at the end must not be drawn due to rounding.
+    const double last = probabilities.up_to.back();
+    for (double& probability : probabilities.up_to)
+        if (probability == last) probability = 1;
+    return probabilities;
 }
 
-/// Reads the shares of `count` things from the weights that the scene gives them, or makes them
-/// equal if it gives none. `of` is the list of the things, for messages.
-Shares read_shares(std::size_t count, const std::optional<ConfigValue>& weights,
-                   const ConfigValue& of) {
-    if (!weights) return shares_of(count, {}, of);
+/// Reads the probabilities of `count` things from the weights that the scene gives them, or makes
+/// them equal if it gives none. `of` is the list of the things, for messages.
+CumulativeProbabilities read_probabilities(std::size_t count,
+                                           const std::optional<ConfigValue>& weights,
+                                           const ConfigValue& of) {
+    if (!weights) return probabilities_of(count, {}, of);
     std::vector<double> numbers;
     for (const ConfigValue& weight : weights->list_of(count, "give a weight for each"))
         numbers.push_back(weight.non_negative("give a weight, such as 1"));
-    return shares_of(count, std::move(numbers), *weights);
+    return probabilities_of(count, std::move(numbers), *weights);
 }
 
 ChoiceOfTexts choice(const ConfigValue& value, const std::optional<ConfigValue>& weights) {
@@ -220,7 +222,7 @@ ChoiceOfTexts choice(const ConfigValue& value, const std::optional<ConfigValue>&
     for (const ConfigValue& one : value.list("give a list of values"))
         result.texts.push_back(flow_text(one.node()));
     if (result.texts.empty()) value.fail("is an empty list; give values to choose from");
-    result.shares = read_shares(result.texts.size(), weights, value);
+    result.probabilities = read_probabilities(result.texts.size(), weights, value);
     return result;
 }
 
@@ -233,7 +235,7 @@ bool is_distribution(const ConfigNode& node) {
 DrawnFrom read_distribution(const ConfigValue& value) {
     ConfigMap map(value,
                   {"uniform", "log-uniform", "normal", "integer", "choice", "within", "weights"},
-                  k_distribution_mend);
+                  k_distribution_hint);
     const auto is_given = [&](std::string_view kind) { return map.has(kind); };
     const auto kind = std::ranges::find_if(k_kinds, is_given);
     if (kind == k_kinds.end())
@@ -274,7 +276,7 @@ DrawnKey read_key(const ConfigNode::Entry& entry) {
     }
     key.is_list = true;
     bool is_drawn = false;
-    for (const ConfigValue& one : value.list(k_distribution_mend)) {
+    for (const ConfigValue& one : value.list(k_distribution_hint)) {
         is_drawn = is_drawn || is_distribution(one.node());
         key.components.push_back(is_distribution(one.node()) ? read_distribution(one)
                                                              : DrawnFrom(flow_text(one.node())));
@@ -285,12 +287,12 @@ DrawnKey read_key(const ConfigNode::Entry& entry) {
 
 /// Rows written in the scene: maps with the same keys.
 DrawnRows read_rows(const ConfigValue& value, const std::optional<ConfigValue>& weights) {
-    constexpr auto k_rows_mend = "give maps of the same keys, such as {lamps.left.power: 20}";
+    constexpr auto k_rows_hint = "give maps of the same keys, such as {lamps.left.power: 20}";
     DrawnRows together;
-    for (const ConfigValue& row : value.list(k_rows_mend)) {
+    for (const ConfigValue& row : value.list(k_rows_hint)) {
         if (row.node().kind != ConfigNode::Kind::map)
             row.fail(
-                fmt::format("expected a map, found {}; {}", row.node().description(), k_rows_mend));
+                fmt::format("expected a map, found {}; {}", row.node().description(), k_rows_hint));
         if (together.rows.empty())
             for (const ConfigNode::Entry& entry : row.node().entries) {
                 check_path(entry.key, entry.position);
@@ -308,8 +310,8 @@ DrawnRows read_rows(const ConfigValue& value, const std::optional<ConfigValue>& 
         if (row.node().entries.size() > together.keys.size())
             row.fail("has keys that the first row has not; all rows have the same keys");
     }
-    if (together.keys.empty()) value.fail(fmt::format("holds nothing to draw; {}", k_rows_mend));
-    together.shares = read_shares(together.rows.size(), weights, value);
+    if (together.keys.empty()) value.fail(fmt::format("holds nothing to draw; {}", k_rows_hint));
+    together.probabilities = read_probabilities(together.rows.size(), weights, value);
     return together;
 }
 
@@ -344,17 +346,17 @@ DrawnRows read_table(const ConfigValue& value, const std::filesystem::path& fold
                         table.name()));
     if (std::ranges::any_of(weights, [](double weight) { return weight < 0; }))
         value.fail(fmt::format("{}: a weight is negative; give 0 or more", table.name()));
-    together.shares = shares_of(together.rows.size(), std::move(weights), value);
+    together.probabilities = probabilities_of(together.rows.size(), std::move(weights), value);
     return together;
 }
 
 DrawnRows read_together(const ConfigValue& value, const std::filesystem::path& folder) {
-    constexpr auto k_together_mend = "give {rows: [{key: value, ...}, ...]} or {table: FILE.csv}";
-    ConfigMap map(value, {"rows", "weights", "table"}, k_together_mend);
+    constexpr auto k_together_hint = "give {rows: [{key: value, ...}, ...]} or {table: FILE.csv}";
+    ConfigMap map(value, {"rows", "weights", "table"}, k_together_hint);
     const std::optional<ConfigValue> table = map.find("table");
     DrawnRows together = table
                              ? read_table(*table, folder)
-                             : read_rows(map.require("rows", k_together_mend), map.find("weights"));
+                             : read_rows(map.require("rows", k_together_hint), map.find("weights"));
     map.finish("'table'");
     return together;
 }
@@ -366,8 +368,8 @@ std::optional<VariationsDesc> read_variations(const ConfigNode& scene,
     const ConfigNode* const section = scene.find(k_variations_key);
     if (section == nullptr) return std::nullopt;
     const ConfigValue value(*section, std::string(k_variations_key));
-    constexpr auto k_section_mend = "give keys: {lamps[0].power: {uniform: [10, 30]}}";
-    ConfigMap map(value, {"seed", "keys", "together"}, k_section_mend);
+    constexpr auto k_section_hint = "give keys: {lamps[0].power: {uniform: [10, 30]}}";
+    ConfigMap map(value, {"seed", "keys", "together"}, k_section_hint);
     VariationsDesc variations;
     if (const auto seed = map.find("seed"))
         variations.seed = static_cast<std::uint64_t>(
@@ -375,7 +377,7 @@ std::optional<VariationsDesc> read_variations(const ConfigNode& scene,
     if (const auto keys = map.find("keys")) {
         if (keys->node().kind != ConfigNode::Kind::map)
             keys->fail(fmt::format("expected a map, found {}; {}", keys->node().description(),
-                                   k_section_mend));
+                                   k_section_hint));
         for (const ConfigNode::Entry& entry : keys->node().entries)
             variations.keys.push_back(read_key(entry));
     }
@@ -383,7 +385,7 @@ std::optional<VariationsDesc> read_variations(const ConfigNode& scene,
         for (const ConfigValue& group : together->list("give a list of tables"))
             variations.together.push_back(read_together(group, file.parent_path()));
     if (variations.keys.empty() && variations.together.empty())
-        value.fail(fmt::format("draws nothing; {}", k_section_mend));
+        value.fail(fmt::format("draws nothing; {}", k_section_hint));
     if (const auto pair = overlap(scene, drawn_keys(variations)))
         value.fail(
             fmt::format("draws both '{}' and '{}', of which one is part of the other; draw "

@@ -16,24 +16,24 @@
 
 namespace uw {
 
-/// Every number from `low` to `high` is as likely.
+/// Uniform from `low` to `high`.
 struct UniformDistribution {
     double low = 0, high = 1;
 };
 
-/// The logarithm is uniform: every ratio between 0 < `low` and `high` is as likely.
+/// Log-uniform between 0 < `low` and `high`: the logarithm is uniform.
 struct LogUniformDistribution {
     double low = 1, high = 10;
 };
 
-/// Normal, of which only what lies within [low, high] is drawn.
+/// Normal, truncated to [low, high].
 struct NormalDistribution {
     double mean = 0, deviation = 1;
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
 };
 
-/// Every whole number from `low` to `high`, both included, is as likely.
+/// Uniform over the whole numbers from `low` to `high`, both included.
 struct IntegerDistribution {
     int low = 0, high = 1;
 };
@@ -42,26 +42,25 @@ struct IntegerDistribution {
 using NumberDistribution = std::variant<UniformDistribution, LogUniformDistribution,
                                         NormalDistribution, IntegerDistribution>;
 
-/// The number below which the part `u`, in (0, 1), of the distribution lies: of a `u` that is
-/// uniform the result is distributed so. Normal numbers are exact to 1e-12 standard deviations.
+/// The quantile of a distribution at `u`, in (0, 1), by which a uniform `u` is transformed to that
+/// distribution. Normal numbers are exact to 1e-12 standard deviations.
 double quantile(const NumberDistribution& distribution, double u);
 
-/// Some of which one is drawn. Their shares of all draws, added up: ascending, the last is 1.
-struct Shares {
+/// The cumulative probabilities of things of which one is drawn: ascending, the last is 1.
+struct CumulativeProbabilities {
     std::vector<double> up_to;
 };
 
 /// Values, as YAML on one line, of which one is drawn.
 struct ChoiceOfTexts {
     std::vector<std::string> texts;
-    Shares shares;  // one per text
+    CumulativeProbabilities probabilities;  // one per text
 };
 
-/// What one value, or one entry of a list, is drawn from. A text is a value that is always the
-/// same.
+/// The distribution of one value, or of one entry of a list. A text is a constant value.
 using DrawnFrom = std::variant<std::string, NumberDistribution, ChoiceOfTexts>;
 
-/// A key of the scene that is drawn by itself.
+/// A key of the scene that is drawn independently.
 struct DrawnKey {
     std::string key;                    // a path as of --set
     SourceLocation where;               // of the key
@@ -78,7 +77,7 @@ struct DrawnRows {
     };
     std::vector<std::string> keys;
     std::vector<Row> rows;
-    Shares shares;  // one per row
+    CumulativeProbabilities probabilities;  // one per row
 };
 
 /// The section `variations` of a scene (docs/scene-file.md): what its variations draw.
@@ -109,8 +108,8 @@ std::vector<DrawnValue> draw(const VariationsDesc& variations, int variation);
 std::string values_text(const std::vector<DrawnValue>& values);
 
 /// The section `variations` of a scene's tree; none if it has none. `file` is the scene's, to whose
-/// folder the names of tables are relative. Whether the scene has the keys that are drawn shows
-/// when they are set. Throws InputError "file:line:column: key path: what; mend", and as
+/// folder the names of tables are relative. The keys that are drawn are checked
+/// when they are set. Throws InputError "file:line:column: key path: what; hint", and as
 /// read_csv_file.
 std::optional<VariationsDesc> read_variations(const ConfigNode& scene,
                                               const std::filesystem::path& file);

@@ -41,12 +41,12 @@ GridMappingDesc read_mapping(const ConfigValue& value, const std::string& grid,
     if (map.has("absorption") || map.has("scattering")) {
         GridMappingDesc::Optics optics{PerBand(context.band_count, 0.0),
                                        PerBand(context.band_count, 0.0), std::nullopt};
-        constexpr auto k_mend = "give coefficients in 1/m per unit of grid value";
+        constexpr auto k_hint = "give coefficients in 1/m per unit of grid value";
         if (const auto entry = map.find("absorption")) {
-            optics.absorption = entry->non_negative_per_band(context.band_count, k_mend);
+            optics.absorption = entry->non_negative_per_band(context.band_count, k_hint);
         }
         if (const auto entry = map.find("scattering")) {
-            optics.scattering = entry->non_negative_per_band(context.band_count, k_mend);
+            optics.scattering = entry->non_negative_per_band(context.band_count, k_hint);
         }
         if (const auto entry = map.find("phase")) optics.phase = read_phase(*entry, context);
         map.finish("a grid with 'absorption' or 'scattering'");
@@ -62,9 +62,9 @@ GridMappingDesc read_mapping(const ConfigValue& value, const std::string& grid,
             "does not say what the grid means; give small and large in ppm per unit of grid value, "
             "one of water.species, or absorption and scattering in 1/m");
     }
-    constexpr auto k_mend = "give ppm per unit of grid value";
-    if (const auto entry = map.find("small")) mapping.small_ppm = entry->non_negative(k_mend);
-    if (const auto entry = map.find("large")) mapping.large_ppm = entry->non_negative(k_mend);
+    constexpr auto k_hint = "give ppm per unit of grid value";
+    if (const auto entry = map.find("small")) mapping.small_ppm = entry->non_negative(k_hint);
+    if (const auto entry = map.find("large")) mapping.large_ppm = entry->non_negative(k_hint);
     map.finish("a grid given in ppm");
     const bool has_species = std::ranges::any_of(
         mapping.amounts, [](const SpeciesAmount& amount) { return amount.amount > 0; });
@@ -125,13 +125,13 @@ void read_stimulus(const ConfigMap& map, EmissionDesc& emission, const ConfigVal
     if (emission.stimulus)
         value.fail("light is set off by speed or by shear; remove by_speed or by_shear");
     if (!map.has("per_unit")) value.fail("applies to per_unit only; remove it");
-    constexpr auto k_mend =
+    constexpr auto k_hint =
         "give where the light begins and where there is all of it, such as [0.1, 0.5]";
-    const auto ends = value.list_of(2, k_mend);
+    const auto ends = value.list_of(2, k_hint);
     emission.stimulus =
-        EmissionDesc::Stimulus{quantity, ends[0].non_negative(k_mend), ends[1].positive(k_mend)};
+        EmissionDesc::Stimulus{quantity, ends[0].non_negative(k_hint), ends[1].positive(k_hint)};
     if (!(emission.stimulus->threshold < emission.stimulus->saturation))
-        value.fail("the first must be less than the second; " + std::string(k_mend));
+        value.fail("the first must be less than the second; " + std::string(k_hint));
 }
 
 EmissionDesc read_one_emission(const ConfigValue& value, const std::string& grid,

@@ -39,7 +39,7 @@ struct GridMappingDesc {
 /// How a volume moves while the shutter is open.
 struct MotionDesc {
     std::vector<std::string> grids;  ///< one vector grid, or three scalar grids: x, y, z
-    std::filesystem::path file;      ///< that holds these grids
+    std::filesystem::path file;      ///< that contains these grids
     bool is_sequence = false;        ///< as VolumeDesc::is_sequence
     std::optional<double> scale;     ///< m/s per unit, in the file's axes; automatic if omitted
     double shutter = 0;              ///< exposure time, centred on the frame's time [s]
@@ -58,13 +58,14 @@ enum class UpAxis { automatic, x, y, z };
 /// `up`: x, y or z.
 UpAxis read_up_axis(const ConfigValue& value);
 
-/// What becomes of level sets, whose values are distances to a surface: they are refused, or their
-/// inside is taken as fog of value 1, which fades to 0 towards the surface within the narrow band.
+/// The treatment of level sets, whose values are distances to a surface: they are rejected, or
+/// their interior becomes fog of value 1, which fades to 0 towards the surface within the narrow
+/// band.
 enum class LevelSets { refused, fog };
 
-/// The light that a volume gives off where one of its grids has a value. It is a lamp of the scene.
+/// The light that a volume emits where one of its grids has a value. It is a lamp of the scene.
 struct EmissionDesc {
-    /// A glowing gas or dust: of the grid's values, times `kelvin` plus `offset`, as temperature.
+    /// A glowing gas or dust, whose temperature is the grid's value times `kelvin` plus `offset`.
     struct Blackbody {
         double kelvin = 1, offset = 0;  ///< [K per unit], [K]
 
@@ -74,13 +75,13 @@ struct EmissionDesc {
     /// The light where the grid has this value.
     struct Row {
         double value = 0;  ///< >= 0
-        PerBand light;     ///< what a cubic metre shines in each direction [W/(sr m^3)]
+        PerBand light;     ///< emission of a cubic metre in each direction [W/(sr m^3)]
 
         friend bool operator==(const Row&, const Row&) = default;
     };
 
-    /// Light that the water's motion sets off, as that of dinoflagellates: none up to a threshold,
-    /// all of it from saturation on, in proportion in between. Needs VolumeDesc::motion.
+    /// Light that the water's motion stimulates, such as that of dinoflagellates: none up to a
+    /// threshold, all of it from saturation on, linear in between. Needs VolumeDesc::motion.
     struct Stimulus {
         enum class Quantity : std::uint8_t {
             speed,  // [m/s]
@@ -94,15 +95,16 @@ struct EmissionDesc {
 
     std::string name;  ///< of the lamp and its layers
     std::string grid;  ///< name in the file; name[i] if several share it
-    /// What a cubic metre shines in each direction, per unit of the grid's value [W/(sr m^3)]; of a
-    /// blackbody, what share of its radiance a metre adds (its absorption, in equilibrium) [1/m];
-    /// of a table, the most in each band.
+    /// The emission per unit of the grid's value [W/(sr m^3)]; for a blackbody, the fraction of its
+    /// radiance that a metre adds (its absorption coefficient, in equilibrium) [1/m]; for a table,
+    /// the greatest value of each band.
     PerBand per_unit;
-    /// Instead: ascending values, linear in between; no light below the first, beyond the last its.
+    /// Instead: ascending values, linear in between; none below the first, constant beyond the
+    /// last.
     std::vector<Row> table;
     std::optional<Blackbody> blackbody;
     std::optional<Stimulus> stimulus;  ///< with per_unit alone
-    int samples = 16;  ///< how many points stand for it where it lights others, 1..1024
+    int samples = 16;  ///< number of points that represent it where it lights others, 1..1024
     SourceLocation where;
 
     friend bool operator==(const EmissionDesc&, const EmissionDesc&) = default;

@@ -19,8 +19,8 @@ namespace uw {
 namespace {
 
 PhaseFunctionDesc read_henyey_greenstein(ConfigMap& map, const SceneContext& /*context*/) {
-    constexpr auto k_mend = "give the mean cosine of the scattering angle";
-    return HenyeyGreensteinDesc{map.require("g", k_mend).between(-1, 1, k_mend)};
+    constexpr auto k_hint = "give the mean cosine of the scattering angle";
+    return HenyeyGreensteinDesc{map.require("g", k_hint).between(-1, 1, k_hint)};
 }
 
 PhaseFunctionDesc read_fournier_forand(ConfigMap& map, const SceneContext& /*context*/) {
@@ -76,21 +76,21 @@ namespace {
 constexpr double k_max_ppm = 1e6;
 
 std::vector<double> read_bands(const ConfigValue& value) {
-    constexpr auto k_mend = "give wavelengths in nm, such as [620, 540, 450]";
-    const std::vector<ConfigValue> entries = value.list(k_mend);
+    constexpr auto k_hint = "give wavelengths in nm, such as [620, 540, 450]";
+    const std::vector<ConfigValue> entries = value.list(k_hint);
     if (entries.empty() || entries.size() > static_cast<std::size_t>(k_max_bands)) {
         value.fail(fmt::format("expected 1 to {} bands, found {}; {}", k_max_bands, entries.size(),
-                               k_mend));
+                               k_hint));
     }
     std::vector<double> bands;
     for (const ConfigValue& entry : entries) {
-        const double nm = entry.positive(k_mend);
+        const double nm = entry.positive(k_hint);
         if (nm < 10) {
             entry.fail(
                 fmt::format("{} looks like micrometres; give nanometres ({})", nm, nm * 1000));
         }
         if (nm < 200 || nm > 1100) {
-            entry.fail(fmt::format("must be from 200 to 1100, found {}; {}", nm, k_mend));
+            entry.fail(fmt::format("must be from 200 to 1100, found {}; {}", nm, k_hint));
         }
         if (std::find(bands.begin(), bands.end(), nm) != bands.end()) {
             entry.fail(fmt::format("{} nm is given twice; remove one", nm));
@@ -240,10 +240,10 @@ SnowDesc read_snow(const ConfigValue& value, const SceneContext& context) {
         snow.exponent = entry->within(0, 10, "give Junge's exponent, of numbers per diameter: 4");
     snow.reflectance.assign(context.band_count, 0.4);
     if (const auto entry = map.find("reflectance")) {
-        constexpr auto k_mend = "give the particles' reflectance, 0 to 1";
+        constexpr auto k_hint = "give the particles' reflectance, 0 to 1";
         snow.reflectance.clear();
-        for (const ConfigValue& band : entry->per_band(context.band_count, k_mend))
-            snow.reflectance.push_back(band.within(0, 1, k_mend));
+        for (const ConfigValue& band : entry->per_band(context.band_count, k_hint))
+            snow.reflectance.push_back(band.within(0, 1, k_hint));
     }
     if (const auto entry = map.find("drift"))
         snow.drift = entry->vector("give a velocity in m/s, such as [0.02, -0.001, 0]");

@@ -79,7 +79,7 @@ struct ForwardScatterDesc {
 
 /// Marine snow: discrete particles, drawn one by one (docs/snow.md).
 struct SnowDesc {
-    /// How the particles' mean is related to the water's coefficients: they hold it already, or
+    /// How the particles' mean is related to the water's coefficients: these include it already, or
     /// the snow's own coefficients are added to them.
     enum class Mean { included, added };
 
@@ -94,7 +94,8 @@ struct SnowDesc {
     Mean mean = Mean::included;
     /// Whether depth, position, normal and id are those of a particle that covers most of a pixel.
     bool in_ground_truth = false;
-    int most = 1'000'000;  ///< particles to draw in an image, about; the others are their mean
+    int most = 1'000'000;  ///< approximate number of particles drawn in an image; the mean replaces
+                           ///< the others
     SourceLocation where;
 
     friend bool operator==(const SnowDesc&, const SnowDesc&) = default;
@@ -109,7 +110,7 @@ struct ScatteringDesc {
     friend bool operator==(const ScatteringDesc&, const ScatteringDesc&) = default;
 };
 
-/// What changes with depth: a table, whose columns are in the place of the water's keys.
+/// Properties that vary with depth: a table whose columns replace keys of the water.
 struct DepthProfileDesc {
     std::filesystem::path file;  ///< CSV (media/water/depth_profile.h)
     SourceLocation where;

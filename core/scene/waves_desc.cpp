@@ -12,7 +12,7 @@ namespace uw {
 
 namespace {
 
-constexpr auto k_wave_direction_mend =
+constexpr auto k_wave_direction_hint =
     "give the direction in which waves travel in degrees, from the surface's u to its v";
 
 SineWaveDesc read_sine(const ConfigValue& value) {
@@ -24,7 +24,7 @@ SineWaveDesc read_sine(const ConfigValue& value) {
     wave.wavelength =
         map.require("wavelength", k_example).positive("give the distance of crests in metres");
     if (const auto direction = map.find("direction"))
-        wave.direction = direction->within(-360, 360, k_wave_direction_mend);
+        wave.direction = direction->within(-360, 360, k_wave_direction_hint);
     if (const auto phase = map.find("phase"))
         wave.phase = phase->within(-360, 360, "give the phase in degrees; 0: a crest");
     if (const auto steepness = map.find("steepness"))
@@ -34,25 +34,26 @@ SineWaveDesc read_sine(const ConfigValue& value) {
 }
 
 std::vector<SineWaveDesc> read_sines(ConfigMap& map) {
-    constexpr auto k_mend = "list its waves, such as [{amplitude: 0.1, wavelength: 3}]";
-    // Beyond this the horizontal motion folds the surface over itself, where it has no height.
+    constexpr auto k_hint = "list its waves, such as [{amplitude: 0.1, wavelength: 3}]";
+    // Beyond this the horizontal motion folds the surface over itself, so that its height is
+    // undefined.
     constexpr double k_max_folding = 0.95;
     std::vector<SineWaveDesc> waves;
     double folding = 0;
-    const ConfigValue list = map.require("waves", k_mend);
-    for (const ConfigValue& entry : list.list(k_mend)) {
+    const ConfigValue list = map.require("waves", k_hint);
+    for (const ConfigValue& entry : list.list(k_hint)) {
         waves.push_back(read_sine(entry));
         folding += waves.back().steepness * waves.back().amplitude * 2 * std::numbers::pi /
                    waves.back().wavelength;
     }
-    // Each is looked at wherever a ray comes near the surface.
+    // All of them are evaluated wherever a ray comes near the surface.
     constexpr std::size_t k_max_waves = 1000;
     if (waves.size() > k_max_waves)
         list.fail(
             fmt::format("has {} waves, and must not have more than {}; leave out the smallest, "
                         "or write a sea of many as type: jonswap",
                         waves.size(), k_max_waves));
-    if (waves.empty()) list.fail(fmt::format("has no entry; {}", k_mend));
+    if (waves.empty()) list.fail(fmt::format("has no entry; {}", k_hint));
     if (folding > k_max_folding)
         list.fail(fmt::format(
             "the sum of steepness 2 pi amplitude / wavelength is {:.3g}, and must not be above {}, "
@@ -64,24 +65,24 @@ std::vector<SineWaveDesc> read_sines(ConfigMap& map) {
 WaveSpectrumDesc read_wave_spectrum(ConfigMap& map, WaveSpectrumDesc::Model model) {
     WaveSpectrumDesc spectrum;
     spectrum.model = model;
-    constexpr auto k_wind_mend = "give the wind's speed in m/s, 0.5 to 60";
-    spectrum.wind = map.require("wind", k_wind_mend).within(0.5, 60, k_wind_mend);
+    constexpr auto k_wind_hint = "give the wind's speed in m/s, 0.5 to 60";
+    spectrum.wind = map.require("wind", k_wind_hint).within(0.5, 60, k_wind_hint);
     if (const auto height = map.find("wind_height"))
         spectrum.wind_height =
             height->within(1, 100, "give the height at which the wind is measured in metres");
     if (const auto direction = map.find("direction"))
-        spectrum.direction = direction->within(-360, 360, k_wave_direction_mend);
+        spectrum.direction = direction->within(-360, 360, k_wave_direction_hint);
     if (model == WaveSpectrumDesc::Model::jonswap) {
-        constexpr auto k_fetch_mend = "give the distance over which the wind has blown in metres";
-        spectrum.fetch = map.require("fetch", k_fetch_mend).positive(k_fetch_mend);
+        constexpr auto k_fetch_hint = "give the distance over which the wind has blown in metres";
+        spectrum.fetch = map.require("fetch", k_fetch_hint).positive(k_fetch_hint);
         if (const auto gamma = map.find("gamma"))
             spectrum.gamma = gamma->within(1, 10, "give the peak enhancement, 3.3 in the mean");
     }
     if (const auto spreading = map.find("spreading"))
         spectrum.spreading = spreading->within(
             0.5, 1000, "give s of cos^2s(angle / 2): 2 for waves from all around, 25 for a swell");
-    constexpr auto k_tile_mend = "give the side of the square that repeats in metres";
-    spectrum.tile = map.require("tile", k_tile_mend).positive(k_tile_mend);
+    constexpr auto k_tile_hint = "give the side of the square that repeats in metres";
+    spectrum.tile = map.require("tile", k_tile_hint).positive(k_tile_hint);
     if (const auto resolution = map.find("resolution")) {
         spectrum.resolution =
             resolution->integer(16, 2048, "give the number of heights along a side");
@@ -99,8 +100,8 @@ HeightImageDesc read_height_image(ConfigMap& map, const SceneContext& context) {
     HeightImageDesc image;
     image.file = read_existing_file(
         map.require("file", "name an OpenEXR or TIFF file of heights in metres"), context);
-    constexpr auto k_mend = "give the width of the whole image in metres";
-    image.width = map.require("width", k_mend).positive(k_mend);
+    constexpr auto k_hint = "give the width of the whole image in metres";
+    image.width = map.require("width", k_hint).positive(k_hint);
     return image;
 }
 

@@ -19,8 +19,8 @@ struct SineWaveDesc {
     double wavelength = 0;  ///< [m], > 0
     double direction = 0;   ///< [degrees], -360..360
     double phase = 0;       ///< at u = v = 0 and time 0; 0: a crest [degrees], -360..360
-    /// How far water moves to and fro, as a share of how far it moves up and down, 0..1: 0 is a
-    /// sine, 1 Gerstner's trochoid.
+    /// The ratio of the water's horizontal to its vertical motion, 0..1: 0 is a sine, 1 Gerstner's
+    /// trochoid.
     double steepness = 0;
 
     friend bool operator==(const SineWaveDesc&, const SineWaveDesc&) = default;

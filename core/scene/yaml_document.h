@@ -71,7 +71,7 @@ struct YamlLimits {
 
 /// Parses one YAML (or JSON) document. `origin` names it in messages and in the nodes' positions.
 /// Aliases are expanded; merge keys are not supported, and tags only where the limits say so.
-/// Throws InputError "file:line:column: what; mend" for a document that is not YAML, not UTF-8
+/// Throws InputError "file:line:column: what; hint" for a document that is not YAML, not UTF-8
 /// text, empty, or over the limits, for more than one document and for duplicate keys.
 ConfigNode parse_yaml(std::string_view text, const std::string& origin,
                       const YamlLimits& limits = {});

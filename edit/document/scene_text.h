@@ -23,7 +23,7 @@ class YamlDraft;
 /// changing it is refused with the reason.
 ///
 /// Every change either succeeds or throws and leaves the text as it was: InputError, one line,
-/// "plume.yaml:14:7: what; mend" or "lamps.left: what; mend"; UsageError for a path that is not of
+/// "plume.yaml:14:7: what; hint" or "lamps.left: what; hint"; UsageError for a path that is not of
 /// the form of a path.
 class SceneText {
   public:

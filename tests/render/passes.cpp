@@ -117,7 +117,7 @@ TEST_F(Passes, ProvideEveryLayerThatHasToBeProvided) {
     desc_.render.integrator = RenderDesc::Integrator::path;
     all |= provided();
     for (const LayerKind& kind : k_layers)
-        EXPECT_EQ(all.has(kind.layer), !kind.mend.empty()) << kind.name;
+        EXPECT_EQ(all.has(kind.layer), !kind.hint.empty()) << kind.name;
 }
 
 }  // namespace
