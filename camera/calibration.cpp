@@ -99,8 +99,8 @@ std::string with_blanks(std::string_view text) {
     return result;
 }
 
-/// What programs write turned into YAML, moving no line: OpenCV's "%YAML:1.0" lacks a space, and
-/// its values have type tags; `ros2 topic echo` ends each message with "---".
+/// Converts the output of programs to valid YAML without moving lines: OpenCV's "%YAML:1.0" lacks a
+/// space, and its values have type tags; `ros2 topic echo` ends each message with "---".
 std::string as_yaml(std::string text) {
     const auto blank = [&](std::size_t begin, std::size_t length) {
         for (std::size_t i = begin; i < begin + length; ++i) text[i] = ' ';

@@ -29,7 +29,7 @@ enum class CalibrationFormat : std::uint8_t {
     matisse,    // Matisse's cameras
 };
 
-/// What a calibration file says about one camera.
+/// The contents of a calibration file about one camera.
 struct Calibration {
     CalibrationFormat format = CalibrationFormat::opencv;
     std::string camera;                // its name in the file; "" if it has none
@@ -41,7 +41,7 @@ struct Calibration {
     std::string hash;                   // of the file's text
 };
 
-/// What the readers and writers of the formats share. Private to this folder.
+/// Helpers shared by the readers and writers of the formats. Private to this folder.
 
 /// OpenCV, ROS and Kalibr place the centre of the first pixel at (0, 0), uwvdb and COLMAP at (0.5,
 /// 0.5).
@@ -114,7 +114,7 @@ bool has_radial_above(const DistortionDesc& distortion, std::size_t count);
 std::span<const CalibrationFormat> calibration_formats();
 /// "kalibr", as on the command line.
 std::string_view word_of(CalibrationFormat format);
-/// "Kalibr camchain", for people.
+/// "Kalibr camchain", for messages.
 std::string_view title_of(CalibrationFormat format);
 
 /// Reads a calibration of any format but a scene; the format is detected from the content. `camera`

@@ -15,10 +15,10 @@ Affine CameraMotion::at(double time) const {
     const auto last = static_cast<double>(poses_.size() - 1);
     const double place = std::clamp((time - span_.begin) / span_.length(), 0.0, 1.0) * last;
     const auto before = std::min(static_cast<std::size_t>(place), poses_.size() - 2);
-    const double share = place - static_cast<double>(before);
+    const double fraction = place - static_cast<double>(before);
     const Affine &a = poses_[before], &b = poses_[before + 1];
-    return {(1 - share) * a.linear() + share * b.linear(),
-            (1 - share) * a.offset() + share * b.offset()};
+    return {(1 - fraction) * a.linear() + fraction * b.linear(),
+            (1 - fraction) * a.offset() + fraction * b.offset()};
 }
 
 namespace {
@@ -31,9 +31,9 @@ Ray focused_ray(const Vector3& direction, const Vector3& from, double vergence) 
     return {at_origin_plus(from), glm::normalize(direction / direction.z - vergence * from)};
 }
 
-/// How far apart rays from around the aperture's centre, focused by `vergence`, are at the plane
-/// across `axis` (in water) through `focus`, relative to how far they were; 0: they meet there. NaN
-/// if one of them does not enter the water.
+/// The distance between rays from around the aperture's centre, focused by `vergence`, at the plane
+/// across `axis` (in water) through `focus`, relative to that at the aperture; 0: they meet there.
+/// NaN if one of them does not enter the water.
 double spread_at(const Point3& focus, const Ray& axis, const Port* port, double vergence) {
     constexpr std::array<std::array<double, 2>, 4> k_around{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
     double sum = 0;
@@ -162,36 +162,36 @@ LensRay Camera::lens_ray(double x, double y) const {
 }
 
 std::optional<ImagePoint> Camera::project(const Point3& world) const {
-    const std::optional<Projection> seen = project_at_its_time(world);
-    return seen ? std::optional(seen->image) : std::nullopt;
+    const std::optional<Projection> projection = project_at_its_time(world);
+    return projection ? std::optional(projection->image) : std::nullopt;
 }
 
 std::optional<Sighting> Camera::sight(const Point3& world) const {
-    const std::optional<Projection> seen = project_at_its_time(world);
-    if (!seen) return std::nullopt;
-    const Ray in_housing{Point3{}, seen->in_housing};
-    const std::optional<Ray> ray = motion_
-                                       ? in_water(in_housing, world_from_camera_at(seen->image.y))
-                                       : in_water(in_housing, world_from_camera_);
-    return ray ? std::optional(Sighting{seen->image, *ray}) : std::nullopt;
+    const std::optional<Projection> projection = project_at_its_time(world);
+    if (!projection) return std::nullopt;
+    const Ray in_housing{Point3{}, projection->in_housing};
+    const std::optional<Ray> ray =
+        motion_ ? in_water(in_housing, world_from_camera_at(projection->image.y))
+                : in_water(in_housing, world_from_camera_);
+    return ray ? std::optional(Sighting{projection->image, *ray}) : std::nullopt;
 }
 
 std::optional<Camera::Projection> Camera::project_at_its_time(const Point3& world) const {
     if (!motion_ || rows_.line_time == 0)
         return project_in_camera(motion_ ? world_from_camera_at(0).inverse() * world
                                          : camera_from_world_ * world);
-    // The row depends on the time, and the time on the row: by iteration, since a point crosses far
-    // fewer rows in the time between two than one.
+    // The row depends on the time, and the time on the row. Fixed-point iteration converges, since
+    // a point crosses far less than one row in the time between two rows.
     constexpr int k_max_steps = 50;
     constexpr double k_close = 1e-9;  // [pixels]
     double row = 0.5 * height_;
-    std::optional<Projection> seen;
+    std::optional<Projection> projection;
     for (int step = 0; step < k_max_steps; ++step) {
-        seen = project_in_camera(world_from_camera_at(row).inverse() * world);
-        if (!seen || std::abs(seen->image.y - row) < k_close) break;
-        row = seen->image.y;
+        projection = project_in_camera(world_from_camera_at(row).inverse() * world);
+        if (!projection || std::abs(projection->image.y - row) < k_close) break;
+        row = projection->image.y;
     }
-    return seen;
+    return projection;
 }
 
 std::optional<Camera::Projection> Camera::project_in_camera(const Point3& point) const {

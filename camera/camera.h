@@ -47,11 +47,11 @@ struct RowExposure {
     double shutter = 0;    ///< exposure time of a row [s]
     double line_time = 0;  ///< from row to row [s]
     int height = 0;        ///< rows
-    /// Only what is exposed within this counts: a part of the exposure. Rows that are not exposed
-    /// then have its nearest end.
+    /// The part of the exposure that counts. Rows that are not exposed within it are taken at its
+    /// nearest end.
     TimeSpan part{-k_always, k_always};
 
-    /// The middle of the exposure at image row `y` [pixels], all of it.
+    /// The middle of the whole exposure at image row `y` [pixels].
     double middle(double y) const { return (y - 0.5 * height) * line_time; }
     /// When image row `y` is exposed, within the part.
     TimeSpan at(double y) const {
@@ -61,8 +61,8 @@ struct RowExposure {
     }
     /// When any row of the image is exposed, whatever the part.
     TimeSpan all() const { return {middle(0) - 0.5 * shutter, middle(height) + 0.5 * shutter}; }
-    /// The share of the exposure of pixel row `row` that lies within the part.
-    double share(int row) const {
+    /// The fraction of the exposure of pixel row `row` that lies within the part.
+    double fraction(int row) const {
         const double t = middle(row + 0.5);
         if (shutter > 0) return at(row + 0.5).length() / shutter;
         return t >= part.begin && t < part.end ? 1 : 0;
@@ -90,7 +90,7 @@ class CameraMotion {
 
 /// A thin lens with its aperture at the camera's centre, focused at a plane across the optical axis
 /// (docs/camera-image.md). In the housing's air all rays of an image position pass through one
-/// point of a plane; through a port they meet where the water's refraction lets them.
+/// point of a plane; through a port they meet where the water's refraction makes them.
 class ThinLens {
   public:
     /// Precondition: the camera has a lens with a focus distance. Throws InputError if that lies
@@ -131,7 +131,7 @@ class Camera final : public RaySource {
     /// camera within its dome, and a calibration that has been read. Throws as ThinLens.
     explicit Camera(const CameraDesc& desc);
     /// A camera that moves while its rows are exposed. `desc` has its pose at the frame's time, or
-    /// of a part of the exposure, which stands for all of its rows where one pose must do.
+    /// that of a part of the exposure, which represents all rows where one pose is needed.
     Camera(const CameraDesc& desc, std::shared_ptr<const CameraMotion> motion,
            const RowExposure& rows);
 
@@ -161,9 +161,9 @@ class Camera final : public RaySource {
     /// there is no such ray: behind a pinhole, outside the field of the lens, inside the housing or
     /// its glass. Behind a port this solves one equation in one unknown, which has a single root if
     /// glass and water are at least as dense optically as the port's air. With a rolling shutter it
-    /// is where the row shows it that is exposed when it is there.
+    /// is consistent: the row is exposed at the moment at which the point is imaged there.
     std::optional<ImagePoint> project(const Point3& world) const;
-    /// What project() finds, with the ray, which costs less than refracted_ray at that position.
+    /// As project(), with the ray, which is cheaper than refracted_ray at that position.
     std::optional<Sighting> sight(const Point3& world) const;
 
   private:
@@ -172,7 +172,7 @@ class Camera final : public RaySource {
         ImagePoint image;
         Vector3 in_housing{0, 0, 1};  // where it comes from, camera frame
     };
-    // The ray in the water, world space, of one in the housing, seen from a pose.
+    // The ray in the water, world space, of one in the housing, for a pose of the camera.
     std::optional<Ray> in_water(const Ray& in_housing, const Affine& world_from_camera) const;
     std::optional<Projection> project_at_its_time(const Point3& world) const;
     std::optional<Projection> project_in_camera(const Point3& point) const;

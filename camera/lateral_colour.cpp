@@ -30,9 +30,9 @@ LateralColour lateral_colour(const Camera& from, const Camera& to) {
             const auto ray = from.refracted_ray(at.x, at.y);
             if (!ray) continue;
             for (const double distance : k_distances) {
-                const auto seen = to.project(ray->at(distance));
-                if (!seen) continue;
-                const double pixels = std::hypot(seen->x - at.x, seen->y - at.y);
+                const auto projected = to.project(ray->at(distance));
+                if (!projected) continue;
+                const double pixels = std::hypot(projected->x - at.x, projected->y - at.y);
                 if (pixels > most.pixels) most = {pixels, at};
             }
         }

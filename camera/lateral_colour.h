@@ -9,7 +9,7 @@
 
 namespace uw {
 
-/// Bands that are seen along the same rays.
+/// Bands that share their rays.
 struct ColourGroup {
     double wavelength_nm = 0;        ///< of the rays
     std::vector<std::size_t> bands;  ///< ascending
@@ -25,8 +25,8 @@ struct LateralColour {
 /// from 0.25 m to 1 km from the glass. 0 where no index depends on the wavelength.
 LateralColour lateral_colour(const CameraDesc& camera, double from_nm, double to_nm);
 
-/// Where a band is seen, from where light of the camera's wavelength is: the lateral colour between
-/// the two.
+/// The shift of a band in the image relative to light of the camera's wavelength: the lateral
+/// colour between the two.
 struct BandShift {
     double wavelength_nm = 0;
     double pixels = 0;
@@ -41,8 +41,8 @@ std::string text_of(std::span<const BandShift> shifts);
 /// Lateral colour up to which bands share their rays [pixels].
 inline constexpr double k_shared_rays = 0.1;
 
-/// Divides the bands of a scene into groups that share rays, each of whose bands is seen within
-/// `tolerance` pixels of where its group is. The first group's rays are those of the camera's own
+/// Divides the bands of a scene into groups that share rays, each of whose bands is imaged within
+/// `tolerance` pixels of its group. The first group's rays are those of the camera's own
 /// wavelength; a single one if no index depends on the wavelength.
 std::vector<ColourGroup> colour_groups(const CameraDesc& camera, std::span<const double> bands_nm,
                                        double tolerance = k_shared_rays);

@@ -246,7 +246,7 @@ std::optional<Vector3> Fisheye::direction(const NormalizedPoint& image) const {
 std::optional<NormalizedPoint> Fisheye::image(const Vector3& direction) const {
     const double across = std::hypot(direction.x, direction.y);
     const double theta = std::atan2(across, direction.z);
-    // The backward direction is imaged all around the circle: at no particular point.
+    // The backward direction is imaged at the whole circle, not at a single point.
     if (theta > max_angle_ || (across == 0 && direction.z < 0)) return std::nullopt;
     if (across == 0) return NormalizedPoint{};
     const double scale = radius(theta) / across;

@@ -18,7 +18,7 @@ struct PortCosines {
     double outer_glass = 1;  // in glass, at the outer surface
 };
 
-/// What Port::transmittance gives for a ray that meets the surfaces so. Both surfaces share their
+/// Port::transmittance for a ray that meets the surfaces at these angles. Both surfaces share their
 /// plane of incidence, so each polarisation is transmitted by itself.
 template <class PortDescription>
 double port_transmittance(const PortDescription& port, const PortCosines& cosines) {
@@ -53,11 +53,11 @@ struct Layer {
 /// Distance from the normal covered by a ray of slope `u` (tangent of its angle to the normal) in
 /// the medium of the lowest index `n`, and its derivative. With Snell's invariant s = n u / sqrt(1
 /// + u^2) a layer covers depth * s / sqrt(index^2 - s^2), here written without cancellation.
-struct Reach {
+struct LateralOffset {
     double distance = 0, slope = 0;
 };
-Reach reach(const std::array<Layer, 3>& layers, double n, double u) {
-    Reach sum;
+LateralOffset lateral_offset(const std::array<Layer, 3>& layers, double n, double u) {
+    LateralOffset sum;
     for (const Layer& layer : layers) {
         const double more = layer.index * layer.index - n * n;  // >= 0
         const double root = std::sqrt(layer.index * layer.index + more * u * u);
@@ -67,9 +67,9 @@ Reach reach(const std::array<Layer, 3>& layers, double n, double u) {
     return sum;
 }
 
-/// A slope close to that of a ray through the water and thin layers before it, whose slope would be
-/// `least` if the distance were proportional to it: the water alone, with its share of that
-/// distance.
+/// An initial slope for a ray through the water and thin layers before it: the exact one for the
+/// water alone with its part of the distance. `least`: the slope if the distance were proportional
+/// to it.
 double first_slope(const Layer& water, double n, double least) {
     const double across = least * n / water.index;  // per depth of water
     const double more = water.index * water.index - n * n;
@@ -134,10 +134,10 @@ std::optional<Vector3> FlatPort::direction_to(const Point3& point) const {
     // The distance is a concave function of the slope, so that a step of Newton's method ends below
     // the root wherever it begins, and no later step overshoots: one backwards is rounding. If the
     // distance cannot be reached (no depth in the medium of the lowest index) it diverges.
-    const double least = wanted / reach(layers, n, 0).slope;
+    const double least = wanted / lateral_offset(layers, n, 0).slope;
     double u = first_slope(layers.back(), n, least);
     for (int iteration = 0;; ++iteration) {
-        const Reach here = reach(layers, n, u);
+        const LateralOffset here = lateral_offset(layers, n, u);
         const double next = std::max(u + (wanted - here.distance) / here.slope, least);
         if (iteration == k_flat_max_iterations || !std::isfinite(next)) return std::nullopt;
         const double step = iteration == 0 ? std::abs(next - u) : next - u;
@@ -219,15 +219,15 @@ std::optional<DomePort::Passage> DomePort::passage(const Point3& from,
 }
 
 std::optional<Ray> DomePort::refracted_ray(const Point3& from, const Vector3& direction) const {
-    const auto way = passage(from, direction);
-    if (!way) return std::nullopt;
-    return Ray{desc_.center + way->outer, way->in_water};
+    const auto path = passage(from, direction);
+    if (!path) return std::nullopt;
+    return Ray{desc_.center + path->outer, path->in_water};
 }
 
 double DomePort::transmittance(const Vector3& direction) const {
-    const auto way = passage(Point3{}, direction);
-    if (!way) return 0;
-    return port_transmittance(desc_, way->cosines);
+    const auto path = passage(Point3{}, direction);
+    if (!path) return 0;
+    return port_transmittance(desc_, path->cosines);
 }
 
 // A ray stays in the plane of the spheres' centre, the camera and the point, and n r sin(i), with i

@@ -10,7 +10,7 @@
 
 namespace uw {
 
-// What several formats have in common.
+// Functions common to several formats.
 
 std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_view hint) {
     if (value.node().kind != ConfigNode::Kind::map) return value.list(hint);
@@ -138,7 +138,7 @@ void read_coefficients(const ConfigValue& value, Model model, Calibration& resul
     const auto refuse = [&](std::string_view expected) {
         value.fail(fmt::format("expected {} numbers, found {}; {}", expected, count, k_hint));
     };
-    // Programs write zeros for what a model does not have.
+    // Programs write zeros for coefficients that a model does not have.
     const auto refuse_beyond = [&](std::size_t last, std::string_view what, std::string_view hint) {
         for (std::size_t i = last; i < count; ++i)
             if (d[i] != 0)

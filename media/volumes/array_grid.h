@@ -8,10 +8,10 @@
 #include "media/volumes/loaded_grid.h"
 #include "media/volumes/vdb_header.h"
 
-/// Grids as arrays of all the values in a box, as numerical software has them.
+/// Dense arrays of all values in a box, as used by numerical software.
 namespace uw {
 
-/// Values in memory that others own: value (i, j, k) is data[i * steps[0] + j * steps[1] + k *
+/// A view of values in memory: value (i, j, k) is data[i * steps[0] + j * steps[1] + k *
 /// steps[2]].
 struct ArrayView {
     const float* data = nullptr;
@@ -25,10 +25,10 @@ struct ArrayView {
     }
 };
 
-/// A grid of the values, as load_grid makes it of a file's: value (i, j, k) has that index, 0
-/// outside, and what is not finite or negative is 0 and warned of. `place`: LoadedGrid's
-/// file_from_index. Throws InputError, which starts with `where`, for voxels without volume, sizes
-/// beyond 2^30, and too little memory.
+/// Makes a grid of the values, as load_grid does from a file: value (i, j, k) has that index;
+/// outside it is 0, and values that are not finite or negative become 0 with a warning. `place`:
+/// LoadedGrid's file_from_index. Throws InputError, which starts with `where`, for voxels without
+/// volume, sizes beyond 2^30, and too little memory.
 LoadedGrid grid_of_array(const ArrayView& values, const Affine& place, std::string name,
                          const SourceLocation& where);
 

@@ -142,8 +142,8 @@ std::vector<std::filesystem::path> neighbours_of(const std::filesystem::path& fi
     return files;
 }
 
-/// What the cache's configuration says of a grid, whose voxels may be finer by a whole factor (as
-/// those of noise are); empty if it is about other grids.
+/// The domain of a grid by the cache's configuration. Its voxels may be finer by a whole factor (as
+/// those of noise are); empty if the configuration belongs to other grids.
 std::optional<FluidDomain> domain_of(const FluidConfig& config, const GridSummary& grid) {
     FluidDomain domain;
     const std::int32_t finer = (*grid.base_resolution)[0] / config.resolution[0];
@@ -228,7 +228,7 @@ std::optional<FluidDomain> find_fluid_domain(const VdbHeader& header) {
         try {
             other = read_vdb_header(file, file.string());
         } catch (const std::runtime_error&) {
-            continue;  // a neighbour that cannot be read tells nothing
+            continue;  // a neighbour that cannot be read is ignored
         }
         const GridSummary* const its = grid_with_resolution(other);
         if (its == nullptr || its->name != grid->name) continue;

@@ -13,7 +13,7 @@
 
 namespace uw {
 
-/// What Blender's fluid solver notes about a frame beside its grids, in the cache's folder config.
+/// The metadata of a frame that Blender's fluid solver stores in the cache's folder config.
 struct FluidConfig {
     std::array<std::int32_t, 3> resolution{};  // voxels of the frame's grids along each axis
     std::array<std::int32_t, 3> domain{};      // of the whole domain
@@ -31,14 +31,14 @@ struct FluidConfig {
 /// inconsistent or of another layout (that of Blender 2.82 to 4 is known).
 std::optional<FluidConfig> read_fluid_config(const std::filesystem::path& data_file);
 
-/// The files that a volume is read from beside its own: that configuration, if there is one.
+/// The files from which a volume is read besides its own: that configuration, if there is one.
 std::vector<std::filesystem::path> files_named_by_volume(const std::filesystem::path& data_file);
 
 /// The frames a second at which the cache that `data_file` belongs to was baked, from the times
 /// that this frame's configuration and a neighbour's state; right if the solver's Time Scale was 1.
 std::optional<double> fluid_frame_rate(const std::filesystem::path& data_file);
 
-/// What is known of the domain that Blender's fluid solver has baked a frame in.
+/// The domain in which Blender's fluid solver has baked a frame, as far as it is known.
 ///
 /// Blender divides the domain's longest side by its resolution, each other side into the nearest
 /// number of whole voxels, and stretches these to fill the domain's box. The file states cubes.
@@ -50,8 +50,8 @@ std::optional<double> fluid_frame_rate(const std::filesystem::path& data_file);
 /// The true size, and where the cut lies, are in the cache's folder config alone.
 struct FluidDomain {
     bool is_adaptive = false;
-    double longest_side = 0;       // of the whole domain [m]
-    int max_voxels = 0;            // of any frame looked at: it has at least as many along it
+    double longest_side = 0;  // of the whole domain [m]
+    int max_voxels = 0;       // of the inspected frames: a lower bound on those along that side
     std::optional<Vector3> voxel;  // the true edges [m], if they are known
     Vector3 first{0};              // voxel of the domain at which the grid begins; 0 if not known
     std::optional<Affine> blender_from_domain;  // as in FluidConfig
@@ -67,8 +67,8 @@ struct FluidDomain {
 /// differ in their number: up to eight of them, by their headers. Empty if nothing tells.
 std::optional<FluidDomain> find_fluid_domain(const VdbHeader& header);
 
-/// A grid's transform, set right: scaled about the file's origin such that its voxels have edges of
-/// VolumeDesc::voxel_size if the scene gives one, else of what is known of the `domain`, in which
+/// A grid's corrected transform: scaled about the file's origin such that its voxels have edges of
+/// VolumeDesc::voxel_size if the scene gives one, else of those known from the `domain`, in which
 /// it is moved to its place. Throws InputError if the scene gives one and the voxels are no cubes.
 Affine with_voxel_size(const Affine& file_from_index, const VolumeDesc& desc,
                        const std::optional<FluidDomain>& domain);

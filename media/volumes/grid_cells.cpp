@@ -23,7 +23,7 @@ std::uint64_t key_of(const nanovdb::Coord& voxel) {
     return key;
 }
 
-/// The key of the block of 2^level times the edge that holds it.
+/// The key of the block of 2^level times the edge that contains it.
 std::uint64_t key_above(std::uint64_t key, unsigned level) {
     std::uint64_t above = 0;
     for (int axis = 2; axis >= 0; --axis) {
@@ -124,9 +124,8 @@ double LineIntegral::over_cell(const CellCorners& corners, const nanovdb::Coord&
            corners.mean({p.x - cell[0], p.y - cell[1], p.z - cell[2]}, length * length * products_);
 }
 
-// Finds the pieces first, without a branch that depends on the cell, so that processors need not
-// guess the axis of the next face, and then integrates those within the block and those at its
-// faces.
+// Finds the pieces first, without a branch that depends on the cell, which would be mispredicted,
+// and then integrates those within the block and those at its faces.
 double LineIntegral::over_block(CellReader& reader, double begin, double end) {
     find_pieces(reader.low(), begin, end);
     double integral = 0;

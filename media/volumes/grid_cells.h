@@ -14,24 +14,24 @@
 
 namespace uw {
 
-/// What the root of a grid's tree has where: blocks of 4096^3 voxels that have nodes below them or
-/// one value, and emptiness between them, in blocks as large as it allows. NanoVDB's accessor looks
-/// through the root's whole table for each voxel outside the nodes at hand, and knows no empty
-/// block larger than a root's: with it, a line through a few voxels that lie far apart, or through
-/// many blocks of one value, would take as long as the grid is wide.
+/// An index of the root of a grid's tree: its blocks of 4096^3 voxels that have nodes below them or
+/// one value, and the empty space between them in blocks as large as possible. NanoVDB's accessor
+/// searches the root's whole table for each voxel outside the cached nodes, and has no empty blocks
+/// larger than a root's: the time for a line through a few distant voxels, or through many blocks
+/// of one value, would grow with the width of the grid.
 class RootBlocks {
   public:
     using Grid = nanovdb::NanoGrid<nanovdb::Fp16>;
 
     explicit RootBlocks(const Grid& grid);
 
-    /// Whether the root has so many blocks, or so far apart, that this is worth its while.
+    /// Whether the root has so many blocks, or so distant ones, that the index pays.
     static bool are_many(const Grid& grid);
 
     struct Block {
         int edge = 0;  // [voxels], a power of two, at a multiple of which it begins
         float value = 0;
-        bool has_nodes = false;  // below it, which have the values
+        bool has_nodes = false;  // below it, which contain the values
     };
     Block at(const nanovdb::Coord& voxel) const;
 
@@ -42,7 +42,7 @@ class RootBlocks {
         bool has_nodes = false;
     };
     std::vector<Entry> entries_;  // by key
-    // The blocks of twice, four times ... the edge that are not empty, up to the one that holds
+    // The blocks of twice, four times ... the edge that are not empty, up to the one that contains
     // all.
     std::vector<std::vector<std::uint64_t>> occupied_;
 };
@@ -73,7 +73,7 @@ class CellReader {
         }
         return in_block_;
     }
-    /// The block of 8^3 voxels that has a voxel; null where a larger one has one value.
+    /// The block of 8^3 voxels that contains a voxel; null if it lies in a larger one of one value.
     const Leaf* leaf(const Coord& voxel) const {
         if (roots_ != nullptr && !root_block(voxel).has_nodes) return nullptr;
         return accessor_.probeLeaf(voxel);
@@ -84,7 +84,7 @@ class CellReader {
                 return block.value;
         return accessor_.getValue(voxel);
     }
-    /// The edge of the block of one value that holds a voxel without a leaf.
+    /// The edge of the block of one value that contains a voxel without a leaf.
     int edge(const Coord& voxel) const {
         if (roots_ != nullptr)
             if (const RootBlocks::Block& block = root_block(voxel); !block.has_nodes)
@@ -99,8 +99,8 @@ class CellReader {
         constexpr int last = k_edge - 1;
         return x == last || y == last || z == last ? at_face(x, y, z) : inside(x, y, z);
     }
-    /// What in_block() gives away from the faces that other blocks follow, where all coordinates
-    /// are less than 7.
+    /// in_block() for cells away from the faces to other blocks, where all coordinates are less
+    /// than 7.
     CellCorners inside(int x, int y, int z) const {
         const Block& block = blocks_[0];
         const std::uint16_t* const first = block.codes + place(x, y, z);
@@ -108,7 +108,7 @@ class CellReader {
         const Codes at_next_z{first[1], first[9], first[65], first[73]};
         return {values(block, at_z), values(block, at_next_z)};
     }
-    /// What in_block() gives at one of those faces.
+    /// in_block() for cells at one of those faces.
     CellCorners at_face(int x, int y, int z) {
         const auto sides =
             static_cast<unsigned>((x + 1) >> 3 << 2 | (y + 1) >> 3 << 1 | (z + 1) >> 3);

@@ -117,7 +117,7 @@ void ProfileRefinement::run(const DepthTolerance& tolerance, const Sample& sampl
 }
 
 // Adds the samples halfway as knots, and decides which intervals between them stay open. A sheet of
-// one voxel can pass two samples as a straight line, but then it is seen from the next interval.
+// one voxel can pass two samples as a straight line, but then the next interval detects it.
 void ProfileRefinement::merge(const DepthTolerance& tolerance, std::vector<double>& least,
                               ConcentrationProfile& profile) {
     std::swap(profile, before_);
@@ -197,7 +197,7 @@ struct PacedStretch {
 
 /// Per-thread storage of profile(), kept so that the hot loop does not allocate.
 struct Scratch {
-    std::vector<GridStretch> stretches;
+    std::vector<GridStretch> intervals;
     std::vector<PacedStretch> paced;
     std::vector<std::size_t> cursor, list_end;  // one list of intervals per brick within `paced`
     std::vector<double> boundaries;
@@ -212,7 +212,7 @@ Scratch& scratch_of_thread() {
     return scratch;
 }
 
-void gather_stretches(const std::vector<GridVolume>& volumes, const Ray& ray, double s_end,
+void gather_intervals(const std::vector<GridVolume>& volumes, const Ray& ray, double s_end,
                       Scratch& scratch) {
     scratch.paced.clear();
     scratch.cursor.clear();
@@ -222,14 +222,14 @@ void gather_stretches(const std::vector<GridVolume>& volumes, const Ray& ray, do
         const LatticeLine line = volume.lattice_line(ray.origin, ray.direction);
         const double pace = k_voxels_per_knot / glm::length(line.direction);
         for (const NanoGrid& brick : volume.bricks()) {
-            scratch.stretches.clear();
-            brick.append_stretches(line, 0, s_end, scratch.stretches);
+            scratch.intervals.clear();
+            brick.append_intervals(line, 0, s_end, scratch.intervals);
             scratch.cursor.push_back(scratch.paced.size());
-            for (const GridStretch& stretch : scratch.stretches) {
+            for (const GridStretch& interval : scratch.intervals) {
                 scratch.paced.push_back(
-                    {stretch.begin, stretch.end, stretch.constant ? k_infinity : pace});
-                scratch.boundaries.push_back(stretch.begin);
-                scratch.boundaries.push_back(stretch.end);
+                    {interval.begin, interval.end, interval.constant ? k_infinity : pace});
+                scratch.boundaries.push_back(interval.begin);
+                scratch.boundaries.push_back(interval.end);
             }
             scratch.list_end.push_back(scratch.paced.size());
         }
@@ -349,7 +349,7 @@ bool GridField::sample_profile(const Ray& ray, double s_end, double steps,
                                ConcentrationProfile& profile) const {
     Scratch& scratch = scratch_of_thread();
     profile.constituent_count = constituent_count_;
-    gather_stretches(volumes_, ray, s_end, scratch);
+    gather_intervals(volumes_, ray, s_end, scratch);
     place_knots(s_end, steps, profile, scratch);
     if (scratch.paced.empty()) {
         profile.concentration.assign(

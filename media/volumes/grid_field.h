@@ -36,7 +36,7 @@ class GridVolume {
     double value(const Point3& x) const;
     /// The exact integral of the interpolated value from `a` to `b` (world) [value m].
     double column(const Point3& a, const Point3& b) const;
-    /// The work of that: NanoGrid::regions_along.
+    /// The cost of that integral: NanoGrid::regions_along.
     std::size_t regions_along(const Point3& a, const Point3& b) const;
 
   private:

@@ -39,8 +39,8 @@ class CellCorners {
     }
 
     /// The mean along a straight piece with the middle `p`, whose extents (x, y, z) have the
-    /// products yz, xz and xy of twelve times `products`. Of a trilinear function that is its value
-    /// in the middle, and its mixed derivatives' share.
+    /// products yz, xz and xy of twelve times `products`. For a trilinear function that is its
+    /// value in the middle plus a term of its mixed derivatives.
     double mean(const Vector3& p, const Vector3& products) const {
         const Pair near = at_[0] + p.z * rise_[0];
         const Pair along_x = at_[1] + p.z * rise_[1] - near;

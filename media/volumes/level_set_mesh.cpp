@@ -20,7 +20,7 @@ namespace uw {
 
 namespace {
 
-// What a voxel that the surface passes takes, in OpenVDB's lists and in ours.
+// The memory for a voxel that the surface passes, in OpenVDB's lists and in ours [bytes].
 constexpr double k_bytes_per_crossing = 160;
 
 openvdb::FloatGrid::Ptr read_level_set(const VdbHeader& header, const GridSummary& grid,

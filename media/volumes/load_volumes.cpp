@@ -62,7 +62,7 @@ VolumeReport report_on(const VolumeDesc& desc, const LoadedGrid& loaded, const G
     return report;
 }
 
-// Whether rays can be traced to the volume and sums along them can hold its values.
+// Checks that rays can be traced to the volume and that sums along them cannot overflow.
 void check_limits(const VolumeReport& report, const VolumeDesc& desc,
                   const GridMappingDesc& mapping) {
     for (int axis = 0; axis < 3; ++axis)
@@ -86,7 +86,7 @@ void check_limits(const VolumeReport& report, const VolumeDesc& desc,
             k_max_concentration, k_max_value));
 }
 
-/// What takes lengths in a grid's file to those in the world.
+/// The linear map of lengths in a grid's file to those in the world.
 Matrix3 world_from_file(const VdbHeader& header, const VolumeDesc& desc,
                         const GridMappingDesc& mapping, const Placement& placement,
                         const std::optional<FluidDomain>& domain) {
@@ -115,7 +115,7 @@ LoadedVolume load_grids(const VolumeDesc& desc, const std::vector<std::vector<Gr
                         std::size_t slab_bytes,
                         const std::optional<EmissionDesc::Stimulus>& stimulus) {
     LoadedVolume volume;
-    if (desc.grids.empty()) return volume;  // it only gives off light
+    if (desc.grids.empty()) return volume;  // it only emits light
     if (desc.array) {
         volume.warnings = desc.array->warnings;
         add_grid(*desc.array, desc, {Centering::node, UpAxis::y}, loads.at(0), volume);
@@ -252,8 +252,8 @@ namespace {
 
 constexpr double k_max_depth = 4;
 
-/// The optical depth of the longest edge of a grid's voxels where it is densest, in the band that
-/// it attenuates most.
+/// The optical depth along the longest edge of a grid's densest voxel, in the band that it
+/// attenuates most.
 double voxel_depth(const VolumeReport& report, const Medium& medium) {
     Spectrum attenuation;
     for (const ConstituentReport& of : report.constituents)

@@ -50,8 +50,8 @@ struct LoadedVolume {
 LoadedVolume load_volume(const VolumeDesc& desc, const std::vector<std::vector<GridLoad>>& loads,
                          std::size_t slab_bytes = k_default_slab_bytes);
 
-/// Reads the grid of a volume's one light, `desc.emission`, as that of a constituent 0, in units of
-/// its value, of which there is as much as the water's motion sets off. Throws as load_volume.
+/// Reads the grid of an emissive volume, `desc.emission`, as that of a constituent 0, in units of
+/// its value, multiplied by the fraction that the water's motion stimulates. Throws as load_volume.
 LoadedVolume load_light(const VolumeDesc& desc);
 
 /// Reads the volumes. `loads[v][g]` gives the meaning of grid g of volume v. Fills one report per
@@ -76,9 +76,9 @@ class VolumeSequenceCheck {
     std::vector<Affine> transforms_;  // of the first frame's grids
 };
 
-/// One line about a grid of voxels so dense that lamps' light changes within them more than what is
-/// interpolated between rays half a voxel apart; none for others. Beyond 4 optical depths light is
-/// 2 % off where it enters such a cloud, beyond 15 5 %, beyond 40 8 %.
+/// A one-line warning about a grid whose voxels are so dense that lamps' light varies within them
+/// more than interpolation between rays half a voxel apart can resolve; none for others. Beyond 4
+/// optical depths light is 2 % off where it enters such a cloud, beyond 15 5 %, beyond 40 8 %.
 std::optional<std::string> coarse_voxel_warning(const VolumeReport& report, const Medium& medium);
 
 }  // namespace uw

@@ -129,13 +129,13 @@ Region region_at(const CellReader& reader, const Coord& cell) {
     return region;
 }
 
-void append(std::vector<GridStretch>& stretches, std::size_t first, const GridStretch& next) {
+void append(std::vector<GridStretch>& intervals, std::size_t first, const GridStretch& next) {
     if (!(next.end > next.begin)) return;
-    if (stretches.size() > first && stretches.back().end == next.begin &&
-        stretches.back().constant == next.constant && !next.constant)
-        stretches.back().end = next.end;
+    if (intervals.size() > first && intervals.back().end == next.begin &&
+        intervals.back().constant == next.constant && !next.constant)
+        intervals.back().end = next.end;
     else
-        stretches.push_back(next);
+        intervals.push_back(next);
 }
 
 }  // namespace
@@ -197,10 +197,10 @@ std::size_t NanoGrid::regions_along(const LatticeLine& line) const {
     return count;
 }
 
-void NanoGrid::append_stretches(const LatticeLine& line, double begin, double end,
-                                std::vector<GridStretch>& stretches) const {
+void NanoGrid::append_intervals(const LatticeLine& line, double begin, double end,
+                                std::vector<GridStretch>& intervals) const {
     CellReader reader(grid_, roots_.get());
-    const std::size_t first = stretches.size();
+    const std::size_t first = intervals.size();
     LatticeWalk walk(line, begin, end, support_);
     while (!walk.done()) {
         const Coord cell = walk.cell();
@@ -210,7 +210,7 @@ void NanoGrid::append_stretches(const LatticeLine& line, double begin, double en
                            (region.kind == Region::Kind::cells && reader.corners(cell).zero());
         const double from = walk.t();
         const double to = walk.leave(region.low, region.high);
-        if (!empty) append(stretches, first, {from, to, constant});
+        if (!empty) append(intervals, first, {from, to, constant});
     }
 }
 
@@ -237,8 +237,8 @@ double NanoGrid::stored_sum() const {
 
 namespace {
 
-// Whether a voxel has no volume to speak of beside its edges: sums along rays through it are not to
-// be trusted.
+// Whether a voxel's volume is negligible compared with its edges: sums along rays through it are
+// not reliable.
 bool is_flat(const Matrix3& edges) {
     constexpr double k_flattest = 1e-6;
     const double longest =

@@ -87,7 +87,7 @@ class NanoGrid {
     /// Bounding box in lattice space outside which the interpolated value is zero.
     const Bounds& support() const { return support_; }
     std::size_t bytes() const { return bytes_; }
-    /// The grid itself, of so many bytes; with the support, what another NanoGrid is made of.
+    /// The bytes of the grid itself, from which, with the support, another NanoGrid can be made.
     const void* data() const { return grid_; }
 
     double sample(const Point3& p) const;
@@ -96,13 +96,14 @@ class NanoGrid {
                      std::span<double> values) const;
     /// The exact integral of the interpolated value over t in [0, 1], in units of t.
     double integrate(const LatticeLine& line) const;
-    /// How many regions the line meets at t in [0, 1], by which the work of integrate() grows:
-    /// blocks of 8^3 voxels, larger ones of one value, and layers of cells between these.
+    /// The number of regions that the line meets at t in [0, 1], to which the cost of integrate()
+    /// is proportional: blocks of 8^3 voxels, larger ones of one value, and layers of cells between
+    /// these.
     std::size_t regions_along(const LatticeLine& line) const;
     /// Appends the intervals of [begin, end] outside which the value is exactly zero; ascending,
     /// disjoint, with adjacent ones of the same kind merged.
-    void append_stretches(const LatticeLine& line, double begin, double end,
-                          std::vector<GridStretch>& stretches) const;
+    void append_intervals(const LatticeLine& line, double begin, double end,
+                          std::vector<GridStretch>& intervals) const;
     /// The sum of all values except those of constant regions (tiles): the minimal work that
     /// touches every voxel in memory, on all permitted threads.
     double stored_sum() const;

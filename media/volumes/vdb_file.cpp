@@ -33,7 +33,7 @@ namespace {
 
 constexpr std::size_t k_whole = std::numeric_limits<std::size_t>::max();  // slab
 
-/// What `slab` holds as concentrations, which is all of the grid where level sets become fog.
+/// The contents of `slab` as concentrations; it is the whole grid if level sets become fog.
 openvdb::FloatGrid::Ptr concentrations_of(const openvdb::GridBase::Ptr& slab,
                                           const GridSummary& grid, const std::string& prefix,
                                           LevelSets level_sets, double& background) {
@@ -121,8 +121,9 @@ class ShutterAverage {
         const openvdb::Vec3d lattice = voxel.asVec3d();
         const openvdb::Vec3d x = centre_of_voxel(lattice);
         const openvdb::Vec3d v = velocity(x);
-        const openvdb::Vec3d way = lattice_of(x + shutter_ * v) - lattice;
-        const double voxels = std::max({std::abs(way.x()), std::abs(way.y()), std::abs(way.z())});
+        const openvdb::Vec3d displacement = lattice_of(x + shutter_ * v) - lattice;
+        const double voxels = std::max(
+            {std::abs(displacement.x()), std::abs(displacement.y()), std::abs(displacement.z())});
         const int count = 1 + static_cast<int>(std::min(k_samples_per_voxel * voxels,
                                                         2 * k_furthest * k_samples_per_voxel));
         double sum = 0;
@@ -140,10 +141,12 @@ class ShutterAverage {
     double shutter_, shift_;
 };
 
-/// The blocks that `density` may reach within `way` voxels; ascending.
-std::vector<openvdb::Coord> blocks_in_reach(const openvdb::FloatGrid& density,
-                                            const openvdb::Vec3d& way) {
-    const auto furthest = [&](int axis) { return static_cast<int>(std::ceil(way[axis])) + 1; };
+/// The blocks to which `density` may move within `displacement` voxels; ascending.
+std::vector<openvdb::Coord> blocks_within(const openvdb::FloatGrid& density,
+                                          const openvdb::Vec3d& displacement) {
+    const auto furthest = [&](int axis) {
+        return static_cast<int>(std::ceil(displacement[axis])) + 1;
+    };
     const openvdb::Coord margin(furthest(0), furthest(1), furthest(2));
     std::set<openvdb::Coord> blocks;
     constexpr int mask = ~(k_leaf_edge - 1);
@@ -157,9 +160,9 @@ std::vector<openvdb::Coord> blocks_in_reach(const openvdb::FloatGrid& density,
     return {blocks.begin(), blocks.end()};
 }
 
-/// The share of its light that the velocity sets off at `x`, in the file's axes.
-double share_set_off(const StimulatedLight& light, const VelocityField::Sampler& velocity,
-                     const openvdb::Vec3d& x) {
+/// The fraction of the light that the velocity stimulates at `x`, in the file's axes.
+double stimulated_fraction(const StimulatedLight& light, const VelocityField::Sampler& velocity,
+                           const openvdb::Vec3d& x) {
     using Quantity = EmissionDesc::Stimulus::Quantity;
     double amount = 0;
     if (light.stimulus.quantity == Quantity::speed) {
@@ -192,8 +195,8 @@ void set_off(openvdb::FloatGrid& density, const VelocityField& velocity, Centeri
         for (auto value = leaves[n]->beginValueOn(); value; ++value) {
             const openvdb::Vec3d x =
                 density.transform().indexToWorld(value.getCoord().asVec3d() + shift);
-            value.setValue(
-                static_cast<float>(static_cast<double>(*value) * share_set_off(light, sampler, x)));
+            value.setValue(static_cast<float>(static_cast<double>(*value) *
+                                              stimulated_fraction(light, sampler, x)));
         }
     });
 }
@@ -216,23 +219,24 @@ openvdb::FloatGrid::Ptr read_density(const VdbHeader& header, const GridSummary&
     return density;
 }
 
-openvdb::Vec3d furthest_way(const VelocityField& velocity, const LoadedGrid& loaded,
-                            const MotionDesc& motion) {
+openvdb::Vec3d furthest_displacement(const VelocityField& velocity, const LoadedGrid& loaded,
+                                     const MotionDesc& motion) {
     const Matrix3 index_from_file = loaded.file_from_index.inverse().linear();
-    const openvdb::Vec3d way = 0.5 * motion.shutter * velocity.largest(index_from_file);
-    const double most = std::max({way.x(), way.y(), way.z()});
+    const openvdb::Vec3d displacement = 0.5 * motion.shutter * velocity.largest(index_from_file);
+    const double most = std::max({displacement.x(), displacement.y(), displacement.z()});
     if (!(most <= k_furthest))
         throw InputError(
             fmt::format("{}: moves grid '{}' by up to {:.3g} voxels within the shutter's {:g} s, "
                         "more than {:g}; "
                         "check velocity.scale, which gives m/s, and render.shutter",
                         motion.where, loaded.name, 2 * most, motion.shutter, 2 * k_furthest));
-    return way;
+    return displacement;
 }
 
 openvdb::FloatGrid::Ptr average(const openvdb::FloatGrid& density, const VelocityField& velocity,
-                                const openvdb::Vec3d& way, double shutter, Centering centering) {
-    const std::vector<openvdb::Coord> blocks = blocks_in_reach(density, way);
+                                const openvdb::Vec3d& displacement, double shutter,
+                                Centering centering) {
+    const std::vector<openvdb::Coord> blocks = blocks_within(density, displacement);
     std::vector<std::unique_ptr<FloatLeaf>> leaves(blocks.size());
     const ShutterAverage shutter_average(density, velocity, shutter, centering);
     parallel_for(blocks.size(),
@@ -262,8 +266,9 @@ LoadedGrid load_moving_grid(const VdbHeader& header, const std::string& name,
         if (light) set_off(*density, velocity, centering, *light);
         openvdb::FloatGrid::Ptr moved_density = density;
         if (motion.shutter > 0)
-            moved_density = average(*density, velocity, furthest_way(velocity, loaded, motion),
-                                    motion.shutter, centering);
+            moved_density =
+                average(*density, velocity, furthest_displacement(velocity, loaded, motion),
+                        motion.shutter, centering);
         const GridIntake moved = take_slab(moved_density, loaded.bricks);
         loaded.warnings = intake_warnings(loaded.statistics, prefix);
         // The rendered grid has other values than the file, and more voxels.

@@ -74,7 +74,7 @@ inline constexpr int k_leaf_edge = 8;
 static_assert(std::endian::native == std::endian::little, "files are read as they lie");
 
 /// Reads a little-endian binary file sequentially and never trusts a size that the file cannot
-/// hold. Errors in the file become a one-line InputError that starts with `where`.
+/// contain. Errors in the file become a one-line InputError that starts with `where`.
 class ByteReader {
   public:
     static constexpr std::size_t k_longest_text = 4096;
@@ -118,8 +118,9 @@ class ByteReader {
 /// or has a version other than 220 to 224 (NanoVDB: 32).
 VdbHeader read_vdb_header(const std::filesystem::path& file, const SourceLocation& where);
 
-/// The grid that a scene calls `name`, whatever it holds. Throws InputError, starting with `where`,
-/// for a name that is missing or shared by several grids; the message lists the file's grids.
+/// The grid that a scene calls `name`, whatever it contains. Throws InputError, starting with
+/// `where`, for a name that is missing or shared by several grids; the message lists the file's
+/// grids.
 const GridSummary& grid_called(const VdbHeader& header, const std::string& name,
                                const SourceLocation& where);
 

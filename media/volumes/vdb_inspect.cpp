@@ -87,8 +87,9 @@ void add_histogram(const openvdb::GridBase& grid, ValueSummary& summary) {
     const double width = summary.max - summary.min;
     for_each_value(grid, [&](double value, std::int64_t voxels) {
         if (!std::isfinite(value)) return;
-        const double share = width > 0 && std::isfinite(width) ? (value - summary.min) / width : 0;
-        const auto bin = static_cast<std::size_t>(share * k_histogram_bins);
+        const double position =
+            width > 0 && std::isfinite(width) ? (value - summary.min) / width : 0;
+        const auto bin = static_cast<std::size_t>(position * k_histogram_bins);
         summary.histogram[std::min<std::size_t>(bin, k_histogram_bins - 1)] += voxels;
     });
 }

@@ -147,9 +147,9 @@ class LayoutWalk {
     std::vector<std::int64_t> leaf_counts_;  // active values of each leaf, in the file's order
 };
 
-/// Checks what OpenVDB 10 believes of a frustum transform: the length of its second map's name, for
-/// which it makes room, and that this is no frustum again, which it reads by recursion. Throws
-/// InputError starting with `where`.
+/// Checks what OpenVDB 10 trusts in a frustum transform: the length of its second map's name, for
+/// which it allocates memory, and that this map is not a frustum again, which it reads recursively.
+/// Throws InputError starting with `where`.
 void check_transform(const VdbHeader& header, const GridSummary& grid,
                      const SourceLocation& where) {
     constexpr const char* k_frustum = "NonlinearFrustumMap";

@@ -52,8 +52,8 @@ openvdb::FloatGrid::Ptr make_grid(const VdbOutputGrid& source) {
     return grid;
 }
 
-/// OpenVDB's way to an OutputFile, which keeps errors until it is committed. Once the calling
-/// thread's work is to stop it throws Interrupted.
+/// A stream buffer through which OpenVDB writes to an OutputFile, which keeps errors until it is
+/// committed. Throws Interrupted once the calling thread's work is to stop.
 class StoppableOutput : public std::streambuf {
   public:
     explicit StoppableOutput(OutputFile& out) : out_(out) {}
@@ -84,7 +84,7 @@ class StoppableOutput : public std::streambuf {
     OutputFile& out_;
 };
 
-/// What openvdb::io::File writes, to any stream.
+/// Writes what openvdb::io::File would, to any stream.
 class VdbArchive : public openvdb::io::Archive {
   public:
     VdbArchive() = default;

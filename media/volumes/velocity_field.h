@@ -17,7 +17,7 @@ class VelocityField {
     /// m/s. Throws InputError starting with `motion.where`.
     VelocityField(const MotionDesc& motion, Centering centering);
 
-    /// Samples the field; one per thread, since it holds caches.
+    /// Samples the field; one per thread, since it contains caches.
     class Sampler {
       public:
         explicit Sampler(const VelocityField& field);

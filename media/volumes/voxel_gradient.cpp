@@ -27,18 +27,18 @@ void VoxelGradient::add(const Point3& lattice, double weight) {
         t[axis] = lattice[axis] - floor;
     }
     for (unsigned corner = 0; corner < 8; ++corner) {
-        double share = weight;
+        double corner_weight = weight;
         std::size_t place = 0;
         bool is_inside = true;
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const bool is_next = (corner >> axis & 1U) != 0;
             const double along = t[static_cast<int>(axis)];
-            share *= is_next ? along : 1 - along;
+            corner_weight *= is_next ? along : 1 - along;
             const long index = cell[axis] + (is_next ? 1 : 0);
             is_inside = is_inside && index >= 0 && index < static_cast<long>(size_[axis]);
             if (is_inside) place = place * size_[axis] + static_cast<std::size_t>(index);
         }
-        if (is_inside) values_[place] += share;
+        if (is_inside) values_[place] += corner_weight;
     }
 }
 
@@ -57,7 +57,7 @@ void VoxelGradient::add_column(const Point3& a, const Point3& b, std::span<const
     const double weight = of_value(weights) * length;
     if (weight == 0) return;
     const LatticeLine line = grid_.lattice_line(a, b - a);
-    // The part of the line that the values reach: one cell around them.
+    // The part of the line within one cell of the values, where they contribute.
     double begin = 0, end = 1;
     for (int axis = 0; axis < 3; ++axis) {
         const double from = line.origin[axis], along = line.direction[axis];

@@ -10,8 +10,8 @@
 
 namespace uw {
 
-/// The derivatives by the values of one grid, in the box of indices from 0 to `size`; what lies
-/// beyond is left out.
+/// Accumulates the derivatives by the values of one grid, in the box of indices from 0 to `size`;
+/// values outside are ignored.
 class VoxelGradient final : public FieldGradient {
   public:
     /// `grid` must outlive it.

@@ -127,7 +127,7 @@ std::vector<double> difference(const ProfileColumns& columns, const std::vector<
     std::vector<double> rest;
     for (std::size_t i = 0; i < whole.size(); ++i) {
         rest.push_back(whole[i] - part[i]);
-        // Rounding of the table's digits.
+        // Tolerates the rounding of the table's digits.
         if (rest.back() < -1e-9 * whole[i])
             columns.fail("an attenuation is less than what it consists of; mend the table");
         rest.back() = std::max(0.0, rest.back());
@@ -164,7 +164,8 @@ void read_coefficients(const WaterDesc& water, ProfileColumns& columns, DepthPro
         columns.fail("has no column scattering; add it, or b to the water's scattering");
 }
 
-/// Absorption of what is dissolved, which is not linear in the chlorophyll: at each depth.
+/// Absorption by dissolved matter and phytoplankton, which is not linear in the chlorophyll, at
+/// each depth.
 void read_dissolved(const WaterDesc& water, ProfileColumns& columns, DepthProfile& profile) {
     const bool has_chlorophyll = columns.has("chlorophyll"), has_cdom = columns.has("cdom");
     if (!has_chlorophyll && !has_cdom) return;

@@ -17,9 +17,10 @@ struct MeasuredVsf {
 /// Throws InputError at the species' place in the scene, IoError if the file cannot be read.
 MeasuredVsf read_measured_vsf(const SpeciesDesc& species);
 
-/// Those of the particles alone at `wavelength_nm`, in water of `salinity` [PSU]: molecular
-/// scattering is taken away if it is part of them; then linear between the wavelengths, at the
-/// angles of the table, and held beyond. Throws InputError if less than nothing is left.
+/// The volume scattering function of the particles alone at `wavelength_nm`, in water of `salinity`
+/// [PSU]: molecular scattering is subtracted if it is included; then it is interpolated linearly
+/// between the wavelengths, at the angles of the table, and constant beyond. Throws InputError if
+/// the difference is negative.
 SampledCurve particle_vsf(const MeasuredVsf& measured, const SpeciesDesc& species,
                           double wavelength_nm, double salinity);
 

@@ -18,7 +18,7 @@ std::size_t order_count(double x) {
 }
 
 /// Logarithmic derivatives psi_n'(z) / psi_n(z) of the Riccati-Bessel functions, n = 0 .. orders,
-/// downwards from where their beginning is forgotten.
+/// by downward recurrence from an order where the starting value no longer matters.
 std::vector<Complex> first_kind(Complex z, std::size_t orders) {
     constexpr std::size_t k_forgotten = 16;
     const std::size_t begin =
@@ -34,7 +34,7 @@ std::vector<Complex> first_kind(Complex z, std::size_t orders) {
     return d;
 }
 
-/// The same derivatives of the functions of the third kind, which are found upwards (Yang 2003,
+/// The logarithmic derivatives of the functions of the third kind, by upward recurrence (Yang 2003,
 /// eqs. 23 and 24).
 std::vector<Complex> third_kind(Complex z, const std::vector<Complex>& first) {
     constexpr Complex k_i{0, 1};

@@ -24,14 +24,14 @@ struct MieSphere {
 
 /// Scattering of a plane wave by a sphere (Lorenz-Mie; coated: Aden and Kerker 1951).
 ///
-/// The coefficients come from logarithmic derivatives, of which those of the first kind are found
-/// downwards and those of the third upwards, and from ratios that stay finite (Yang 2003), so that
-/// neither size (up to 1e5) nor absorption makes them overflow.
+/// The coefficients are computed from logarithmic derivatives (downward recurrence for the first
+/// kind, upward for the third) and from ratios that stay finite (Yang 2003), so that neither size
+/// (up to 1e5) nor absorption makes them overflow.
 class MieScattering {
   public:
     explicit MieScattering(const MieSphere& sphere);
 
-    /// Cross sections by the sphere's geometric one.
+    /// Efficiencies: cross sections over the sphere's geometric one.
     double extinction_efficiency() const { return extinction_; }
     double scattering_efficiency() const { return scattering_; }
     /// Mean cosine of the scattering angle.

@@ -103,7 +103,7 @@ double horner(std::span<const double> c, double x) {
 ///     nu = (3-mu)/2,  d = 4 sin^2(psi/2) / (3 (n-1)^2),  d180 = d at psi = pi.
 ///
 /// The first term is 0/0 at d = 1; near it the quotients are evaluated by their binomial series. p
-/// is unbounded as psi approaches 0. Below `k_min_angle` it goes on linear in sin^2(psi/2),
+/// is unbounded as psi approaches 0. Below `k_min_angle` it is continued linearly in sin^2(psi/2),
 /// without a step and with the integral over that cone (known in closed form), so that it is finite
 /// everywhere and the whole integral is still 1.
 class FournierForand final : public PhaseFunction {

@@ -74,7 +74,7 @@ class PiecewiseFunction {
 /// Between angles: ln p linear in ln psi; p linear in psi where an end is 0 (an angle of 0, or a
 /// value of 0). Below the first angle, if it is not 0, the power law of the first segment is
 /// extrapolated (its exponent clamped to [-1.9, 0], so that the integral stays finite) down to
-/// `k_min_angle`, and held constant from there to 0. Beyond the last angle its value is held.
+/// `k_min_angle`, and constant from there to 0. It is also constant beyond the last angle.
 class TabulatedPhase : public PhaseFunction {
   public:
     /// 1e-6 rad (0.2 arc seconds): far below any pixel, and below the diffraction angle of a

@@ -48,28 +48,28 @@ class VolumeBySize {
                 fmt::format("{}: its size distribution is 0 everywhere; mend size", species.where));
         factor_ = 1 / sum;
         mean_volume_ = sum / number;
-        if (!has_ends) mean_volume_ = volume_share(first_, last_) * mean_volume_of_lognormal();
+        if (!has_ends) mean_volume_ = volume_fraction(first_, last_) * mean_volume_of_lognormal();
     }
 
     double first() const { return first_; }
     double last() const { return last_; }
     double greatest() const { return sizes_.greatest; }
     double operator()(double log_diameter) const { return factor_ * value(log_diameter); }
-    /// Of a particle [m^3]; of one that is among those left out, 0.
+    /// The volume of a particle [m^3], counting those that are left out as 0.
     double mean_volume() const { return mean_volume_; }
 
-    /// The shares of the volume of a log-normal distribution without ends in particles that are too
-    /// small and too large to be allowed.
+    /// The fractions of the volume of a log-normal distribution without ends in particles that are
+    /// too small and too large to be computed.
     struct LeftOut {
         double small = 0, large = 0;
     };
     LeftOut left_out() const {
         constexpr double k_all = std::numeric_limits<double>::infinity();
-        return {volume_share(-k_all, std::log(k_min_diameter)),
-                volume_share(std::log(k_max_diameter), k_all)};
+        return {volume_fraction(-k_all, std::log(k_min_diameter)),
+                volume_fraction(std::log(k_max_diameter), k_all)};
     }
 
-    /// All that the distribution depends on.
+    /// A key of everything on which the distribution depends.
     std::string text() const {
         std::string text = fmt::format("sizes {} {:a} {:a} {:a} {:a} {:a} {:a}",
                                        static_cast<int>(sizes_.type), sizes_.least, sizes_.greatest,
@@ -84,9 +84,9 @@ class VolumeBySize {
     }
 
   private:
-    // Numbers times the diameter to the power k are another log-normal distribution, k times the
-    // square of its deviation farther up. Cross sections have k from 2 to 3, or 6 where particles
-    // are smaller than the wavelength. There is less than 1e-4 of them beyond 4 deviations.
+    // A log-normal distribution weighted by the diameter to the power k is log-normal again,
+    // shifted by k times its variance. Cross sections have k from 2 to 3, or 6 where particles are
+    // smaller than the wavelength. Less than 1e-4 of them lie beyond 4 deviations.
     void find_ends_of_lognormal() {
         constexpr double k_reach = 4, k_wavelength = 1e-6;
         const double deviation = std::log(sizes_.sigma);
@@ -102,13 +102,13 @@ class VolumeBySize {
         sizes_.greatest = sizes_.median * std::exp(deviation * last);
     }
 
-    /// The share of the volume of a log-normal distribution between two logarithms of diameters.
-    double volume_share(double first, double last) const {
+    /// The fraction of the volume of a log-normal distribution between two logarithms of diameters.
+    double volume_fraction(double first, double last) const {
         const double deviation = std::log(sizes_.sigma);
         const double middle = std::log(sizes_.median) + 3 * deviation * deviation;
         const double a = (first - middle) / (std::numbers::sqrt2 * deviation);
         const double b = (last - middle) / (std::numbers::sqrt2 * deviation);
-        // Tails are not differences from 1.
+        // Tails are computed directly, not as differences from 1.
         return a > 0 ? 0.5 * (std::erfc(a) - std::erfc(b)) : 0.5 * (std::erfc(-b) - std::erfc(-a));
     }
 
@@ -203,10 +203,10 @@ double interpolated(std::span<const double> xs, std::span<const double> ys, doub
     return y;
 }
 
-/// A table of the angles [degrees] and one more between each two of them but 0 and the first, by a
-/// cubic through their neighbours, all in logarithms. The power laws of TabulatedPhase cut the
-/// corners of a function that is curved, by 1.6e-4 of the integral of bubbles; those of half the
-/// width by a quarter of that, for no more of Mie's series.
+/// A table of the angles [degrees] with one more between each two, except between 0 and the first,
+/// by a cubic through their neighbours, all in logarithms. The power laws of TabulatedPhase are
+/// chords of a curved function, an error of 1.6e-4 of the integral for bubbles; intervals of half
+/// the width have a quarter of it, at no cost in terms of the Mie series.
 SampledCurve table_with_middles(std::span<const double> angles, std::span<const double> phase) {
     const auto degrees = [](double psi) {
         return psi == std::numbers::pi ? 180 : psi * (180 / std::numbers::pi);
@@ -261,7 +261,8 @@ class SizeAverage {
 
     const std::vector<double>& angles() const { return angles_; }
 
-    /// The terms of all sizes, which are evenly spread over the logarithm of their diameters.
+    /// The number of terms for all sizes, which are equidistant in the logarithm of their
+    /// diameters.
     double work() const {
         const double greatest = wave_number_ * std::exp(sizes_.last()) / 2;
         const double least = wave_number_ * std::exp(sizes_.first()) / 2;
@@ -272,7 +273,7 @@ class SizeAverage {
                (mean + k_fewest_orders);
     }
 
-    /// All that the sums depend on, and the version of how they are found.
+    /// A key of everything on which the sums depend, and of the version of the method.
     std::string text() const {
         const auto of = [](std::complex<double> index) {
             return fmt::format("{:a} {:a}", index.real(), index.imag());
@@ -303,10 +304,10 @@ class SizeAverage {
 
   private:
     static constexpr std::size_t k_first = 128, k_most = 2048;
-    /// To be raised with every change of the results: those of other versions are not used again.
+    /// To be increased with every change of the results: those of other versions are not reused.
     static constexpr int k_version = 2;
 
-    /// Counts the sizes that are done. Their number may be less than the most.
+    /// Counts the sizes that are done. Their number may be less than the maximum.
     class Progress {
       public:
         explicit Progress(const ProgressCallback& tell) : tell_(tell) {}
@@ -357,7 +358,7 @@ class SizeAverage {
         const MieScattering mie(sphere);
         const double area = weight * std::numbers::pi / 4 * diameter * diameter;
         sums.scattering += area * mie.scattering_efficiency();
-        // Rounding would make a little of what does not absorb.
+        // Rounding would give non-absorbing particles a small absorption.
         if (sphere_index_.imag() > 0 || coat_index_.imag() > 0)
             sums.absorption +=
                 area * std::max(0.0, mie.extinction_efficiency() - mie.scattering_efficiency());

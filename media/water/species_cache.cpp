@@ -71,7 +71,7 @@ std::string contents(const std::string& key, std::span<const double> results) {
            bytes_of(results.data(), results.size_bytes());
 }
 
-/// Makes room in a full folder: the oldest half goes.
+/// Makes room in a full folder: removes the oldest half.
 void thin_out(const fs::path& folder) {
     std::error_code error;
     std::vector<std::pair<fs::file_time_type, fs::path>> files;
@@ -132,7 +132,7 @@ void keep_results(const std::string& key, const std::vector<double>& results) {
         file.write(whole + bytes_of(&sum, sizeof sum));
         file.commit();
     } catch (const std::exception&) {
-        // A full disk or a home that cannot be written costs time, not the picture.
+        // A full disk or a read-only home costs time, but must not fail the render.
     }
 }
 

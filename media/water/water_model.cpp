@@ -29,7 +29,7 @@ struct SpeciesInBand {
 /// The source of a phase function of the medium: equal sources share one.
 using PhaseSource = std::variant<PhaseFunctionDesc, KopelevichClass, SpeciesInBand>;
 
-/// The most species_work of all species in all bands: some ten minutes of two processors.
+/// The limit on the species_work of all species in all bands: some ten minutes of two processors.
 constexpr double k_max_species_work = 2e11;
 
 /// Assembles the model step by step: the uniform water first, since grids may refer to it.
@@ -37,7 +37,7 @@ class Builder {
   public:
     Builder(const WaterDesc& water, const ProgressCallback& progress);
 
-    /// Adds up the work that the species are which will be needed, so that progress is that of all.
+    /// Sums the work of the species that will be needed, so that progress refers to all of them.
     /// Throws InputError if it is too much.
     void expect(const std::vector<VolumeDesc>& volumes);
     void add_uniform();
@@ -54,10 +54,10 @@ class Builder {
     static Spectrum& scattering(OpticalCoefficients& x, std::size_t phase);
 
     void warn_of_held_wavelengths(std::size_t species);
-    /// Adds what is more of something than its least to a constituent.
+    /// Adds the excess of a quantity over its least value to a constituent.
     void add_curve(int constituent, std::vector<double> values);
     void add_coefficient_curves(const std::vector<double>& values, bool scatters);
-    /// Adds particles, of which `absorbing_ppm` absorb, where others do not say so all of them.
+    /// Adds particles, of which `absorbing_ppm` absorb; by default all of them.
     void add_species(std::size_t species, double ppm, double absorbing_ppm, OpticalCoefficients& x);
     void add_species(std::size_t species, double ppm, OpticalCoefficients& x) {
         add_species(species, ppm, ppm, x);
@@ -81,8 +81,8 @@ class Builder {
     const std::size_t band_count_;
     std::optional<DepthProfile> profile_;
     std::vector<Strata::Curve> curves_;
-    double expected_ = 0, done_ = 0;          // species_work of those to be computed
-    std::vector<bool> known_species_;         // those that have been asked for
+    double expected_ = 0, done_ = 0;          // species_work of the species to be computed
+    std::vector<bool> known_species_;         // the species that have been requested
     std::vector<PhaseSource> phase_sources_;  // one per medium phase function
     std::vector<OpticsEntry> optics_;
 };
@@ -114,7 +114,7 @@ bool same_optics(const GridMappingDesc::Optics& a, const GridMappingDesc::Optics
            function(a) == function(b);
 }
 
-/// The least of what a profile has [depth * bands + band], by band.
+/// The least values of a profile [depth * bands + band], by band.
 Spectrum min_by_band(const std::vector<double>& values, std::size_t bands) {
     Spectrum least{};
     for (std::size_t i = 0; i < values.size(); ++i)
@@ -220,7 +220,7 @@ void Builder::expect(const std::vector<VolumeDesc>& volumes) {
     use(water_.amounts);
     for (const VolumeDesc& volume : volumes)
         for (const GridMappingDesc& grid : volume.grids) use(grid.amounts);
-    std::size_t most = 0;  // the species that is the most work
+    std::size_t most = 0;  // the species with the most work
     double work_of_most = 0;
     for (std::size_t i = 0; i < species_.size(); ++i) {
         if (!used[i]) continue;
@@ -370,8 +370,8 @@ void Builder::add_curve(int constituent, std::vector<double> values) {
     curves_.push_back({static_cast<std::size_t>(constituent), std::move(values)});
 }
 
-/// Whether all bands' values above their least are those of `band` times a factor, which become
-/// `factors`: then one constituent stands for all.
+/// Whether the excess of each band over its least value is that of `band` times a factor, which
+/// becomes its entry of `factors`: then one constituent represents all bands.
 bool change_alike(const std::vector<double>& values, const Spectrum& least, std::size_t band,
                   std::size_t bands, Spectrum& factors) {
     double most = 0;

@@ -17,7 +17,7 @@ struct WaterModel {
     Medium medium;
     std::vector<std::vector<std::vector<GridLoad>>> loads;  // [volume][grid mapping]
     double small_ppm = 0, large_ppm = 0;   // background particles, part of medium.uniform
-    std::shared_ptr<const Strata> strata;  // of the depth profile; null if nothing changes
+    std::shared_ptr<const Strata> strata;  // of the depth profile; null if nothing varies
     std::vector<std::string> warnings;     // one line each, with the location in the scene file
 };
 
@@ -35,11 +35,11 @@ struct WaterModel {
 /// after its first grid. Coefficients without a phase function scatter like the uniform water in
 /// each band, molecules included. Unused phase functions and constituents are omitted.
 ///
-/// A depth profile's least values are part of the uniform water, what is more at some depths of the
-/// constituents: particles of those that grids add to, and absorption and scattering of
-/// "absorption" and "scattering" [1/m], one for each band unless all bands' change alike.
+/// A depth profile's least values are part of the uniform water; the excess over them at each depth
+/// is part of the constituents: particles of those to which grids add, absorption and scattering of
+/// "absorption" and "scattering" [1/m], one for each band unless all bands vary alike.
 ///
-/// `progress` is told how far the computation of species is, if any takes time.
+/// `progress` is called with the progress of computing species, if any takes time.
 ///
 /// Throws InputError starting with the location in the scene file: unknown preset, a band outside
 /// pure water's table (300 to 900 nm) without explicit absorption, coefficients without a phase
@@ -47,14 +47,14 @@ struct WaterModel {
 WaterModel build_water_model(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
                              const ProgressCallback& progress = {});
 
-/// The coefficients of all water at the depths of the model's strata, in their order, without what
-/// grids add; none without strata.
+/// The coefficients of the water at the depths of the model's strata, in their order, without the
+/// grids; none without strata.
 std::vector<OpticalCoefficients> coefficients_by_depth(const WaterModel& model);
 
 /// The water's own particles (WaterDesc::small_ppm, large_ppm).
 enum class WaterParticles : std::uint8_t { small, large };
 
-/// What more of the water's own particles changes.
+/// The derivatives of the water's optical properties by the concentration of its own particles.
 struct ParticleDerivative {
     /// The phase functions of the water's medium, and the particles' own.
     std::vector<std::shared_ptr<const PhaseFunction>> phase_functions;

@@ -97,7 +97,7 @@ double backscatter_fraction(const PhaseFunction& phase) {
 }
 
 double mean_cosine(const PhaseFunction& phase) {
-    // For symmetric scattering the remainder is the rounding of the sum, and means 0.
+    // For symmetric scattering the remainder is only rounding, and is taken as 0.
     constexpr double k_rounding = 1e-13;
     const double mean = moment(phase, 0, [](double psi) { return std::cos(psi); });
     return std::abs(mean) < k_rounding ? 0 : mean;

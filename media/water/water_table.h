@@ -73,7 +73,7 @@ struct WaterTable {
 /// known at the scene's own bands only.
 bool is_given_per_band(const WaterDesc& water, const std::vector<VolumeDesc>& volumes);
 
-/// Tabulates the result of build_water_model, to which `progress` goes, for `water` at
+/// Tabulates the result of build_water_model, to which `progress` is passed, for `water` at
 /// `water.bands_nm`, of which there may be more than k_max_bands unless numbers are given per band.
 /// Throws as build_water_model.
 WaterTable tabulate_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,

@@ -173,8 +173,8 @@ std::string bands_outside(const WaterDesc& water, const WavelengthRange& range) 
     return outside;
 }
 
-/// Beyond its measurements, a preset's absorption in excess of pure water's is held. If all of that
-/// hardly shows over a metre of water, there is nothing to say.
+/// Beyond its measurements, a preset's absorption in excess of pure water's is constant. If that
+/// excess is hardly visible over a metre of water, no warning is needed.
 void warn_of_held_absorption(const WaterDesc& water, const JerlovPreset& preset,
                              std::vector<std::string>& warnings) {
     constexpr double k_visible = 0.02;  // of the light, per metre
@@ -182,10 +182,10 @@ void warn_of_held_absorption(const WaterDesc& water, const JerlovPreset& preset,
     std::string outside;
     for (const double band : water.bands_nm) {
         if (preset.measured.contains(band)) continue;
-        const double held = preset.excess_absorption.value(band);
-        const double share = -std::expm1(-std::max(0.0, held));
-        if (share < k_visible) continue;
-        most = std::max(most, share);
+        const double excess = preset.excess_absorption.value(band);
+        const double absorbed = -std::expm1(-std::max(0.0, excess));
+        if (absorbed < k_visible) continue;
+        most = std::max(most, absorbed);
         outside += fmt::format("{}{:g}", outside.empty() ? "" : ", ", band);
     }
     if (outside.empty()) return;

@@ -10,8 +10,8 @@
 
 namespace uw {
 
-// Tests hold each of these formulas against its paper by itself; a scene's absorption is put
-// together of them by uniform_absorption.
+// Tests compare each of these formulas with its paper; uniform_absorption combines them to a
+// scene's absorption.
 
 /// Wavelengths covered by a table [nm].
 struct WavelengthRange {
@@ -87,7 +87,7 @@ const JerlovPreset& jerlov_preset(std::string_view name);
 /// is added. The excess is relative to pure water at 20 deg C and 35 PSU (a scene's defaults, and
 /// close to the sampled seas), so that with these the sum equals the measured value at every
 /// measured wavelength, and other values affect the water itself as they do without a preset.
-/// Outside the measured range the excess at the end is held (0 if negative). Outside pure water's
+/// Outside the measured range the excess at the end is used (0 if negative). Outside pure water's
 /// table: InputError.
 double jerlov_absorption(const JerlovPreset& preset, double wavelength_nm, double temperature,
                          double salinity);

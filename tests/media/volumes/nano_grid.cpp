@@ -136,7 +136,7 @@ TEST_F(NanoGridTest, OutsideItsStretchesAllIsZero) {
     lines.push_back({{-20, 5, 5}, {200, 1, 2}});
     for (const LatticeLine& line : lines) {
         std::vector<GridStretch> stretches;
-        grid_of_two.append_stretches(line, 0, 1, stretches);
+        grid_of_two.append_intervals(line, 0, 1, stretches);
         double last = 0;
         for (const GridStretch& stretch : stretches) {
             EXPECT_LT(stretch.begin, stretch.end);
@@ -207,7 +207,7 @@ TEST_F(NanoGridTest, TheWorkOfALineIsThatOfWhatTheFileHolds) {
                     // twelve and as many layers.
                     EXPECT_LE(hostile.regions_along(line), 400U) << size[axis] << " " << u << v;
                     std::vector<GridStretch> stretches;
-                    hostile.append_stretches(line, 0, 1, stretches);
+                    hostile.append_intervals(line, 0, 1, stretches);
                     EXPECT_LE(stretches.size(), 200U);
                 }
     }
