@@ -182,8 +182,8 @@ CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen
     here.resize(4 + lens.count());
     double least = squares.sum(here);
     constexpr int k_max_steps = 100;
-    constexpr double k_min_share = 1e-3;  // of a step
-    constexpr double k_gain = 1e-12;      // relative, of the sum: less is rounding
+    constexpr double k_min_damping = 1e-3;  // of a step
+    constexpr double k_gain = 1e-12;        // relative, of the sum: less is rounding
     for (int i = 0; i < k_max_steps; ++i) {
         const std::vector<double> step = squares.step(here);
         if (step.empty())
@@ -191,14 +191,14 @@ CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen
                 "{}: what the camera sees through its port does not determine a pinhole; leave "
                 "--pinhole-fit out, or let the camera see surfaces all over its image",
                 camera.where));
-        double share = 1, sum = least;
+        double damping = 1, sum = least;
         std::vector<double> there;
         do {
             there = here;
-            for (std::size_t k = 0; k < there.size(); ++k) there[k] += share * step[k];
+            for (std::size_t k = 0; k < there.size(); ++k) there[k] += damping * step[k];
             sum = squares.sum(there);
-            share *= 0.5;
-        } while (!(sum < least) && share > k_min_share);
+            damping *= 0.5;
+        } while (!(sum < least) && damping > k_min_damping);
         if (!(sum < least)) break;
         const bool is_last = least - sum <= k_gain * least;
         here = std::move(there);
@@ -221,8 +221,8 @@ struct SeenByCamera {
     std::size_t on_surfaces = 0;
     std::vector<double> distances;  // of surfaces, ascending [m]
 
-    double quantile(double share) const {
-        return distances[static_cast<std::size_t>(share *
+    double quantile(double fraction) const {
+        return distances[static_cast<std::size_t>(fraction *
                                                   static_cast<double>(distances.size() - 1))];
     }
 };

@@ -243,7 +243,7 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     if (width_ == 0 || height_ == 0)
         throw InputError(fmt::format("the pictures of {} x {} pixels are too small to compare",
                                      scene.camera.width, scene.camera.height));
-    // What is left over is shared out between the edges.
+    // The remaining pixels are divided equally between the edges.
     left_ = (scene.camera.width - cell_side_ * width_) / 2;
     top_ = (scene.camera.height - cell_side_ * height_) / 2;
     pixels_per_side_ = std::clamp(
@@ -256,8 +256,8 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     weigh(Weights::by_observation);
     const std::size_t all =
         files_.size() * static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    constexpr double k_min_share = 0.01;
-    if (static_cast<double>(cells_.size()) < k_min_share * static_cast<double>(all))
+    constexpr double k_min_fraction = 0.01;
+    if (static_cast<double>(cells_.size()) < k_min_fraction * static_cast<double>(all))
         throw InputError(fmt::format(
             "the pictures have next to nothing to compare: {} of {} cells are neither black nor "
             "white; expose them so that what matters is grey",

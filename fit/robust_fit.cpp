@@ -175,12 +175,13 @@ void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
             direction.error = error;
             constexpr double k_counts = 0.2;  // of the most affected
             double most = 0;
-            for (const double share : vector) most = std::max(most, std::abs(share));
+            for (const double component : vector) most = std::max(most, std::abs(component));
             for (std::size_t i = 0; i < n; ++i)
                 if (std::abs(vector[i]) > k_counts * most) direction.unknowns.push_back(i);
             std::ranges::sort(direction.unknowns, std::greater{},
                               [&](std::size_t i) { return std::abs(vector[i]); });
-            for (const std::size_t i : direction.unknowns) direction.shares.push_back(vector[i]);
+            for (const std::size_t i : direction.unknowns)
+                direction.components.push_back(vector[i]);
             result.free_directions.push_back(std::move(direction));
         }
         if (is_nothing) {
@@ -242,10 +243,10 @@ BlockCovariance inverse_of(BlockCovariance matrix) {
         }
         for (std::size_t row = 0; row < k_block; ++row) {
             if (row == pivot) continue;
-            const double share = matrix[row * k_block + pivot];
+            const double factor = matrix[row * k_block + pivot];
             for (std::size_t column = 0; column < k_block; ++column) {
-                inverse[row * k_block + column] -= share * inverse[pivot * k_block + column];
-                matrix[row * k_block + column] -= share * matrix[pivot * k_block + column];
+                inverse[row * k_block + column] -= factor * inverse[pivot * k_block + column];
+                matrix[row * k_block + column] -= factor * matrix[pivot * k_block + column];
             }
         }
     }
@@ -343,14 +344,14 @@ void begin_elsewhere(LeastSquaresProblem& problem, const SceneUnknowns& unknowns
                      std::uint64_t seed, int start) {
     for (std::size_t i = 0; i < problem.shared.size(); ++i) {
         LeastSquaresProblem::Unknown& unknown = problem.shared[i];
-        const double share = draw_random(seed, unknowns.all()[i].name, 0, start);
+        const double u = draw_random(seed, unknowns.all()[i].name, 0, start);
         if (std::isfinite(unknown.lower) && std::isfinite(unknown.upper)) {
-            unknown.value = unknown.lower + share * (unknown.upper - unknown.lower);
+            unknown.value = unknown.lower + u * (unknown.upper - unknown.lower);
             continue;
         }
         const double width = std::min(unknowns.all()[i].scale / 3, unknown.prior_deviation);
         unknown.value =
-            std::clamp(unknown.value + (2 * share - 1) * width, unknown.lower, unknown.upper);
+            std::clamp(unknown.value + (2 * u - 1) * width, unknown.lower, unknown.upper);
     }
 }
 

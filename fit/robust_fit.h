@@ -87,11 +87,11 @@ struct FoundValue {
     double size = 1;
 };
 
-/// Unknowns of which only a combination is determined: moved together in these shares of their
-/// sizes, they leave the observations as they are.
+/// Unknowns of which only a combination is determined: moved together by these components of
+/// their sizes, they leave the observations unchanged.
 struct FreeDirection {
     std::vector<std::size_t> unknowns;  // most affected first
-    std::vector<double> shares;         // likewise, of unit length
+    std::vector<double> components;     // likewise, of unit length
     /// The standard error along it, in sizes; infinite: nothing at all is known.
     double error = 0;
 };

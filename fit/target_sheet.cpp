@@ -133,9 +133,10 @@ void draw_foot(const BoardDesc& board, double side, double top, PageContent& pag
     page.rectangle(k_margin, top, k_ruler_length, k_line, 0);
     for (int mm = 0; mm <= 100; mm += 10)
         page.rectangle(k_margin + mm - 0.5 * k_line, top, k_line, mm % 50 == 0 ? 4 : 2.5, 0);
-    page.text(k_margin + k_ruler_length + 3, top + 3, 8,
-              "100 mm: print at 100 %, without fitting to the page, and measure. By what the ruler "
-              "is off, the squares are.");
+    page.text(
+        k_margin + k_ruler_length + 3, top + 3, 8,
+        "100 mm: print at 100 %, without fitting to the page, and measure. The squares are off "
+        "by as much as the ruler.");
     const std::string form = fmt::format("{}x{}x{:.6g}", board.columns, board.rows, board.square);
     page.text(k_margin, top + 11, 9,
               fmt::format("{} x {} inner corners, squares of {:.6g} mm: --board {}", board.columns,

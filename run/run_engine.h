@@ -32,8 +32,8 @@ class SequenceClock {
     bool finished() const { return done_ == images_; }
     bool is_sequence() const { return images_ > 1; }
 
-    /// The share of all images that is done, with `fraction` of the one that is rendered.
-    double share_done(double fraction) const {
+    /// The progress over all images, 0..1, with `fraction` done of the one that is rendered.
+    double progress(double fraction) const {
         return (static_cast<double>(done_) + fraction) / static_cast<double>(images_);
     }
 

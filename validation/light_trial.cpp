@@ -201,14 +201,14 @@ class AllLightTrial {
         const LayerPlan plan = layer_plan(renderer.scene(), k_layers);
         pixels_ = draw_pixels(film.width(), film.height(), bands());
         result_.parts.resize(bands());
-        const double share = 1.0 / (film.width() * film.height());
+        const double pixel_weight = 1.0 / (film.width() * film.height());
         for (std::size_t part = 0; part < k_part_layers.size(); ++part) {
             const auto first = static_cast<std::size_t>(plan.first_channel(k_part_layers[part]));
             for (int y = 0; y < film.height(); ++y)
                 for (int x = 0; x < film.width(); ++x)
                     for (std::size_t b = 0; b < bands(); ++b)
                         result_.parts[b].means[part] +=
-                            share * static_cast<double>(film.pixel(x, y)[first + b]);
+                            pixel_weight * static_cast<double>(film.pixel(x, y)[first + b]);
         }
         const auto first_of = [&](Layer layer) {
             return static_cast<std::size_t>(plan.first_channel(layer));

@@ -26,7 +26,7 @@ double LightParts::all() const {
     return std::accumulate(means.begin(), means.end(), 0.0);
 }
 
-double LightParts::share(std::size_t part) const {
+double LightParts::fraction(std::size_t part) const {
     return all() > 0 ? means[part] / all() : 0;
 }
 

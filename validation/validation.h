@@ -123,8 +123,8 @@ struct LightParts {
     std::array<double, 4> means{};
 
     double all() const;
-    /// The share of part k_names[part] in all light, 0 without any.
-    double share(std::size_t part) const;
+    /// The fraction of all light that is in part k_names[part]; 0 without any light.
+    double fraction(std::size_t part) const;
     /// All light over that of single scattering; 0 without that.
     double ratio() const;
 };

@@ -143,14 +143,14 @@ TrialScene homogenised(const TrialScene& trial, const ImageScene& scene) {
     return splatted(in_water(scene, std::move(medium)));
 }
 
-TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double share) {
+TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double fraction) {
     Medium medium = trial.scene().water.medium;
     const OpticalCoefficients whole = medium.uniform;
     const OpticalCoefficients none{{}, std::vector<Spectrum>(whole.scattering.size())};
     Constituent water{.name = "water", .unit = "1", .per_unit = none};
-    add_scaled(water.per_unit, whole, share);
+    add_scaled(water.per_unit, whole, fraction);
     medium.uniform = none;
-    add_scaled(medium.uniform, whole, 1 - share);
+    add_scaled(medium.uniform, whole, 1 - fraction);
     medium.constituents = {water};
 
     const Bounds bounds = reach_of(trial);
@@ -181,8 +181,8 @@ TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, 
             load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1, parts.volume_reports, parts.warnings);
         parts.image = parts.image.with([&](SceneDesc& desc) {
             ForwardScatterDesc& forward = desc.water.forward_scatter;
-            forward.G *= 1 - share;
-            forward.B *= 1 - share;
+            forward.G *= 1 - fraction;
+            forward.B *= 1 - fraction;
         });
     });
     return splatted(std::move(renderer));
@@ -365,16 +365,16 @@ constexpr double k_narrowest = 1e-6;
 class Kernel {
   public:
     Kernel(ForwardScatterDesc::Shape shape, double width_x, double width_y, int reach)
-        : side_(static_cast<std::size_t>(reach) + 1), shares_(side_ * side_) {
+        : side_(static_cast<std::size_t>(reach) + 1), fractions_(side_ * side_) {
         const double s = std::max(width_x, k_narrowest), t = std::max(width_y, k_narrowest);
         for (std::size_t j = 0; j < side_; ++j)
             for (std::size_t i = 0; i < side_; ++i)
-                shares_[j * side_ + i] = corner(shape, (static_cast<double>(i) + 0.5) / s,
-                                                (static_cast<double>(j) + 0.5) / t);
-        outside_ = 1 - 4 * shares_.back();
+                fractions_[j * side_ + i] = corner(shape, (static_cast<double>(i) + 0.5) / s,
+                                                   (static_cast<double>(j) + 0.5) / t);
+        outside_ = 1 - 4 * fractions_.back();
         // From integrals over [0, x] x [0, y] to those over pixels; the kernel is even.
         const auto difference = [this](std::size_t begin, std::size_t step) {
-            double* const first = shares_.data() + begin;
+            double* const first = fractions_.data() + begin;
             for (std::size_t i = side_ - 1; i > 0; --i) first[i * step] -= first[(i - 1) * step];
             first[0] *= 2;
         };
@@ -382,9 +382,9 @@ class Kernel {
         for (std::size_t i = 0; i < side_; ++i) difference(i, side_);
     }
 
-    double share(int across, int down) const {
-        return shares_[static_cast<std::size_t>(std::abs(down)) * side_ +
-                       static_cast<std::size_t>(std::abs(across))];
+    double fraction(int across, int down) const {
+        return fractions_[static_cast<std::size_t>(std::abs(down)) * side_ +
+                          static_cast<std::size_t>(std::abs(across))];
     }
     /// The fraction that goes farther than the reach.
     double outside() const { return outside_; }
@@ -399,7 +399,7 @@ class Kernel {
     }
 
     std::size_t side_;
-    std::vector<double> shares_;
+    std::vector<double> fractions_;
     double outside_ = 0;
 };
 
@@ -523,15 +523,15 @@ class DirectSum {
         std::vector<std::size_t> columns;
         for (int across = -reach; across <= reach; ++across)
             columns.push_back(static_cast<std::size_t>(mirrored(x + across, trial_.width())));
-        std::vector<double> shares(pixels_, kernel.outside() / static_cast<double>(pixels_));
+        std::vector<double> fractions(pixels_, kernel.outside() / static_cast<double>(pixels_));
         for (int down = -reach; down <= reach; ++down) {
             const auto row = static_cast<std::size_t>(mirrored(y + down, trial_.height()));
-            double* const into = shares.data() + row * static_cast<std::size_t>(trial_.width());
+            double* const into = fractions.data() + row * static_cast<std::size_t>(trial_.width());
             for (std::size_t i = 0; i < columns.size(); ++i)
-                into[columns[i]] += kernel.share(static_cast<int>(i) - reach, down);
+                into[columns[i]] += kernel.fraction(static_cast<int>(i) - reach, down);
         }
         for (std::size_t i = 0; i < pixels_; ++i)
-            for (std::size_t b = 0; b < bands_; ++b) image[i][b] += shares[i] * scattered[b];
+            for (std::size_t b = 0; b < bands_; ++b) image[i][b] += fractions[i] * scattered[b];
     }
 
     const TrialScene& trial_;

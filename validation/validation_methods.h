@@ -35,12 +35,12 @@ TrialScene make_trial(const ImageScene& scene);
 /// scatters forward with the scene's K, G and B. `scene` is what `trial` was made from.
 TrialScene homogenised(const TrialScene& trial, const ImageScene& scene);
 
-/// `trial`, whose water is uniform, with a `share` of that water (above 0, at most 1) moved into a
-/// VDB grid of constant value: the grid is written to a file and read back, and outside it is only
-/// the rest. It extends from all cameras, lamps and surfaces as far as 15 optical depths. G and B
-/// of forward scatter are relative to the uniform water that they describe (physics section 6): if
-/// some of it stays, they are reduced with it, so that the blur is the same.
-TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double share);
+/// `trial`, whose water is uniform, with a `fraction` of that water (above 0, at most 1) moved into
+/// a VDB grid of constant value: the grid is written to a file and read back, and outside it is
+/// only the rest. It extends from all cameras, lamps and surfaces as far as 15 optical depths. G
+/// and B of forward scatter are relative to the uniform water that they describe (physics section
+/// 6): if some of it stays, they are reduced with it, so that the blur is the same.
+TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double fraction);
 
 /// `count` of McGlamery's planes in the water of `trial`, placed as its scene says.
 Slabs planes_of(const TrialScene& trial, int count);

@@ -39,10 +39,10 @@ std::optional<PathSurvey> survey_path(const SceneDesc& scene, const Surfaces& su
     const int steps = std::min(frames->last - frames->first, k_max_points - 1);
     double up = 0;
     for (int i = 0; i <= steps; ++i) {
-        const double share = steps == 0 ? 0 : static_cast<double>(i) / steps;
+        const double fraction = steps == 0 ? 0 : static_cast<double>(i) / steps;
         PathPoint point;
-        point.frame =
-            frames->first + static_cast<int>(std::lround(share * (frames->last - frames->first)));
+        point.frame = frames->first +
+                      static_cast<int>(std::lround(fraction * (frames->last - frames->first)));
         point.time = time_of_frame(scene, point.frame);
         const Affine pose = world_from_camera(scene, {point.frame});
         point.position = at_origin_plus(pose.offset());

@@ -26,7 +26,7 @@ namespace {
 constexpr double k_invisible_depth = 0.01;
 // Whatever lies behind this optical depth is taken to be black.
 constexpr double k_opaque_depth = 10;
-// A share of a grid in view that is most likely a mistake.
+// A fraction of a grid in view that is most likely a mistake.
 constexpr double k_little_in_view = 1e-3;
 
 void warn_of_grid(const GridSurvey& grid, bool has_lamps, std::vector<std::string>& warnings) {
@@ -158,11 +158,11 @@ class Reach {
         const Point3 origin = lamp.origin(x);
         const Vector3 way = x - origin;
         if (normal != nullptr && glm::dot(way, *normal) >= 0) return false;
-        const double share = lamp.relative_intensity(way) / lamp.spread(glm::length(way));
-        if (!(share >= k_reach) || scene_.surfaces->occluded(origin, x)) return false;
+        const double irradiance = lamp.relative_intensity(way) / lamp.spread(glm::length(way));
+        if (!(irradiance >= k_reach) || scene_.surfaces->occluded(origin, x)) return false;
         const std::vector<double> tau = depth(origin, x);
         for (std::size_t band = 0; band < tau.size(); ++band)
-            if (lamp.axis_intensity()[band] > 0 && share * std::exp(-tau[band]) >= k_reach)
+            if (lamp.axis_intensity()[band] > 0 && irradiance * std::exp(-tau[band]) >= k_reach)
                 return true;
         return false;
     }
@@ -200,8 +200,8 @@ std::string name_of_object(const Surfaces& surfaces, std::uint32_t id) {
 }
 
 /// Fills in the fractions: sums over points distributed evenly in the grid's bounds.
-void measure_shares(const AssembledScene& scene, const Reach& reach, const GridVolume& grid,
-                    GridSurvey& survey) {
+void measure_fractions(const AssembledScene& scene, const Reach& reach, const GridVolume& grid,
+                       GridSurvey& survey) {
     const Bounds& box = grid.voxel_bounds();
     if (box.empty()) return;
     struct Sums {
@@ -255,7 +255,7 @@ std::vector<GridSurvey> survey_grids(const AssembledScene& scene, const Reach& r
             survey.report = volume.reports[g];
             for (std::size_t axis = 0; axis < 3; ++axis)
                 survey.depth[axis] = depth_through_middle(survey.report, scene.water.medium, axis);
-            measure_shares(scene, reach, volume.grids[g], survey);
+            measure_fractions(scene, reach, volume.grids[g], survey);
             grids.push_back(std::move(survey));
         }
     return grids;

@@ -28,9 +28,9 @@ std::string per_band(const std::vector<double>& values) {
     return text;
 }
 
-std::string percent(double share) {
-    if (share > 0 && share < 0.001) return "under 0.1 %";
-    return fmt::format("{:.3g} %", 100 * share);
+std::string percent(double fraction) {
+    if (fraction > 0 && fraction < 0.001) return "under 0.1 %";
+    return fmt::format("{:.3g} %", 100 * fraction);
 }
 
 Report report_on_water(const AssembledScene& scene) {

@@ -777,13 +777,14 @@ Bounds held_by(const VdbInspection& inspection, const VdbAdvice& advice) {
     for (const GridInspection& grid : inspection.grids) {
         if (std::ranges::count(advice.map, grid.summary.name) == 0) continue;
         if (grid.world_bounds.empty()) continue;
-        Affine mended;
+        Affine corrected;
         if (desc.voxel_size || domain) {
             const Affine stated = Affine::scale(grid.voxel_size);
-            mended = upright * with_voxel_size(stated, desc, domain) * (upright * stated).inverse();
+            corrected =
+                upright * with_voxel_size(stated, desc, domain) * (upright * stated).inverse();
         }
         for (const Point3& corner : {grid.world_bounds.min, grid.world_bounds.max})
-            bounds.extend(mended * corner);
+            bounds.extend(corrected * corner);
     }
     return bounds;
 }

@@ -24,9 +24,10 @@ std::string histogram(const ValueSummary& values) {
             bars += ' ';
             continue;
         }
-        const double share =
+        const double fraction =
             std::log1p(static_cast<double>(count)) / std::log1p(static_cast<double>(most));
-        const auto shade = static_cast<std::size_t>(share * static_cast<double>(k_shades.size()));
+        const auto shade =
+            static_cast<std::size_t>(fraction * static_cast<double>(k_shades.size()));
         bars += k_shades[std::min(shade, k_shades.size() - 1)];
     }
     return bars;

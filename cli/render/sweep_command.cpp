@@ -191,7 +191,7 @@ class SweepRun : public RunClient {
     }
 
     void tell(const std::string& stage, double fraction) override {
-        progress_(engine_.clock().share_done(stage == "render" ? k_rendering * fraction : 0));
+        progress_(engine_.clock().progress(stage == "render" ? k_rendering * fraction : 0));
     }
 
     WantedImage want(std::size_t /*place*/, ImageScene& scene) override {

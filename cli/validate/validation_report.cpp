@@ -78,7 +78,7 @@ ReportTable parts_of(const LightValidation& light) {
         ReportTable::Row& row =
             table.rows.emplace_back(ReportTable::Row{{LightParts::k_names[part]}});
         for (const LightParts& parts : light.parts)
-            row.cells.push_back(fmt::format("{:.1f} %", 100 * parts.share(part)));
+            row.cells.push_back(fmt::format("{:.1f} %", 100 * parts.fraction(part)));
     }
     ReportTable::Row& row =
         table.rows.emplace_back(ReportTable::Row{{"all light / single scattering"}});

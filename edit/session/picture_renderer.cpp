@@ -247,8 +247,8 @@ bool PictureRenderer::is_step(const EditedScene& scene, PictureQuality quality) 
 // Of the light paths that `render` takes for the whole picture, those of one part of it. In
 // proportion to what it adds to the picture they leave the same noise; a faint lamp has more, as it
 // may be looked at alone, and turned up.
-double PictureRenderer::share_of_paths(const EditedScene& scene, PictureQuality quality,
-                                       std::optional<std::size_t> lamp) const {
+double PictureRenderer::fraction_of_paths(const EditedScene& scene, PictureQuality quality,
+                                          std::optional<std::size_t> lamp) const {
     if (quality != PictureQuality::final || !has_all_light(scene)) return 1;
     const auto light = [&](std::optional<std::size_t> part) {
         const Layers layers =

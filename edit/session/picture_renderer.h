@@ -59,8 +59,8 @@ class PictureRenderer {
     Layers find(PictureQuality quality, const std::string& key) const;
     bool is_known(const EditedScene& scene, PictureQuality quality) const;
     bool is_step(const EditedScene& scene, PictureQuality quality) const;
-    double share_of_paths(const EditedScene& scene, PictureQuality quality,
-                          std::optional<std::size_t> lamp) const;
+    double fraction_of_paths(const EditedScene& scene, PictureQuality quality,
+                             std::optional<std::size_t> lamp) const;
     Layers render(const EditedScene& scene, PictureQuality quality,
                   std::optional<std::size_t> lamp);
     void make(const std::shared_ptr<const EditedScene>& scene, PictureQuality quality);

@@ -148,8 +148,8 @@ Json suggestion_json(const Suggestion& found) {
             {"tried", found.tried}};
 }
 
-// Unless a window chooses one, the part has this share of the image's shorter side.
-constexpr double k_patch_share = 0.2;
+// Unless a window chooses one, the part has this fraction of the image's shorter side.
+constexpr double k_patch_fraction = 0.2;
 
 // The part of the full image, or of a picture of it, that is meant.
 PixelWindow scaled(const PixelWindow& part, const SceneDesc& desc, const Picture& picture) {
@@ -225,7 +225,7 @@ Json SessionMeasures::numbers(const NumbersRequest& request) {
         part = scaled(*request.part, desc, *picture);
         kind = "pixels";
     } else if (const int side = static_cast<int>(
-                   std::lround(k_patch_share * std::min(picture->width, picture->height)));
+                   std::lround(k_patch_fraction * std::min(picture->width, picture->height)));
                const auto patterned = side > 1 ? patterned_part(layers, side) : std::nullopt) {
         part = *patterned;
         kind = "checkerboard";

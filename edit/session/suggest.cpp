@@ -19,8 +19,8 @@ constexpr double k_finest_step = 0.01;  // [m]
 Point3 position_at(const SuggestRequest& request, const Place& place) {
     Point3 position;
     for (int axis = 0; axis < 3; ++axis) {
-        const double share = request.in_box ? place[static_cast<std::size_t>(axis)] : place[0];
-        position[axis] = std::lerp(request.from[axis], request.to[axis], share);
+        const double fraction = request.in_box ? place[static_cast<std::size_t>(axis)] : place[0];
+        position[axis] = std::lerp(request.from[axis], request.to[axis], fraction);
     }
     return position;
 }

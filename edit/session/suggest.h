@@ -29,8 +29,8 @@ struct SuggestRequest {
     double distance = 3;  // of the target [m]
     Objective objective = Objective::contrast;
     Aim aim = Aim::keep;
-    /// Positions whose target has less than this share of the light that falls on it now are left
-    /// out; 0: none.
+    /// Positions whose target has less than this fraction of the light that falls on it now are
+    /// left out; 0: none.
     double min_light = 0;
     /// The most positions that are tried, 12..10000: two thirds of them on a grid, the rest about
     /// the best.

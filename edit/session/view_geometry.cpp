@@ -112,8 +112,9 @@ std::optional<double> beam_half_angle(const LampProfileDesc& profile) {
         std::size_t i = table->values.size() - 1;
         while (table->values[i] < half) --i;  // the last of those, if the beam is hollow
         if (i + 1 == table->values.size()) return table->angles[i];
-        const double share = (table->values[i] - half) / (table->values[i] - table->values[i + 1]);
-        return table->angles[i] + share * (table->angles[i + 1] - table->angles[i]);
+        const double fraction =
+            (table->values[i] - half) / (table->values[i] - table->values[i + 1]);
+        return table->angles[i] + fraction * (table->angles[i + 1] - table->angles[i]);
     }
     return std::nullopt;
 }

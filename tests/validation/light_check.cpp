@@ -42,9 +42,9 @@ TEST(LightChecks, FailWherePixelsAreNoisierThanStated) {
 TEST(LightParts, SayHowMuchSingleScatteringLeavesOut) {
     const LightParts parts{{1, 2, 3, 6}};
     EXPECT_EQ(parts.all(), 12);
-    EXPECT_EQ(parts.share(3), 0.5);
+    EXPECT_EQ(parts.fraction(3), 0.5);
     EXPECT_EQ(parts.ratio(), 4);
-    EXPECT_EQ(LightParts{}.share(0), 0);
+    EXPECT_EQ(LightParts{}.fraction(0), 0);
     EXPECT_EQ(LightParts{}.ratio(), 0);
 }
 
