@@ -28,8 +28,8 @@ struct CalibrationSurvey {
     /// Angle to the axis up to which the lens has rays [rad], and its distance from the principal
     /// point along x [pixels]; empty for a lens that covers everything before it.
     std::optional<double> fold_angle, fold_radius;
-    /// How far the bands of a scene are seen from where light of the camera's wavelength is, at
-    /// most [pixels]; empty where the port's indices do not depend on the wavelength.
+    /// The greatest shifts of the bands of a scene relative to light of the camera's wavelength
+    /// [pixels]; empty if the port's indices do not depend on the wavelength.
     std::vector<BandShift> lateral_colour;
     double covered = 0;  // fraction of the image's pixels with a ray into the water
     struct Target {
@@ -44,7 +44,7 @@ CalibrationSurvey survey_calibration(const std::filesystem::path& file,
                                      const Calibration& calibration,
                                      std::span<const double> bands_nm = {});
 
-/// For people, ASCII; for programs, as docs/command-line.md says.
+/// The report as text for people (ASCII) or as JSON for programs (docs/command-line.md).
 Report report_on_calibration(const CalibrationSurvey& survey);
 
 /// `uwvdb calibration` as the command line knows it.

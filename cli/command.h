@@ -15,7 +15,7 @@
 
 namespace uw {
 
-/// What the program's exit codes mean (docs/command-line.md).
+/// The program's exit codes (docs/command-line.md).
 enum ExitCode : int {
     k_exit_done = 0,
     k_exit_internal = 1,
@@ -71,7 +71,7 @@ struct Option {
 /// returned remain valid.
 class Options {
   public:
-    /// A switch: true where it is given.
+    /// A switch: true if it is given.
     Option& flag(std::string names, bool& variable, std::string help);
     /// Any text.
     Option& text(std::string names, std::string value_name, std::string& variable,
@@ -92,7 +92,7 @@ class Options {
                    double low, double high, std::string help);
     Option& number(std::string names, std::string value_name, double& variable, double low,
                    double high, std::string help);
-    /// Text that `take` understands, or refuses with a UsageError.
+    /// Text that `take` parses, or rejects with a UsageError.
     Option& parsed(std::string names, std::string value_name,
                    std::function<void(const std::string&)> take, std::string help);
 
@@ -127,9 +127,9 @@ struct Command {
     std::function<ExitCode()> run;
 };
 
-/// Reads the command line: the options of the chosen command go to their variables, and its `run`
-/// is returned; or what prints the requested help or version. Throws UsageError of one line if it
-/// is wrong, with the nearest right word. `commands` outlive the result.
+/// Parses the command line: sets the variables of the chosen command's options, and returns its
+/// `run`, or a function that prints the requested help or version. Throws UsageError of one line if
+/// it is wrong, with the nearest right word. `commands` outlive the result.
 std::function<ExitCode()> read_command_line(int argc, const char* const* argv,
                                             std::span<const Command> commands);
 

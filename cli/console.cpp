@@ -125,7 +125,7 @@ void Progress::update(double fraction, const std::string& note) {
     const double interval = is_often ? k_short_interval : k_line_interval;
     const bool last = fraction >= 1;
     if (!last && elapsed.count() - last_drawn_ < interval) return;
-    if (last && !drawn_) return;  // finished before anything was due
+    if (last && !drawn_) return;  // finished before anything had to be shown
     last_drawn_ = elapsed.count();
     draw(fraction, elapsed.count(), note);
 }
@@ -162,7 +162,7 @@ void Progress::print_json(double fraction, std::optional<double> seconds_left,
     Json line{{"stage", label_}, {"fraction", std::min(fraction, 1.0)}};
     if (seconds_left) line["seconds_left"] = *seconds_left;
     if (!note.empty()) line["note"] = note;
-    // Names in it may be no UTF-8.
+    // Names in it may not be valid UTF-8.
     print_message(line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 

@@ -16,9 +16,9 @@
 
 namespace uw {
 
-/// To be called first: opens whichever of stdin, stdout and stderr the caller has closed, or the
-/// first files opened would take their place and receive our messages; and has an exceeded file
-/// size limit reported as a failed write instead of ending the program.
+/// To be called first: opens those of stdin, stdout and stderr that the caller has closed, as
+/// otherwise the first files opened would take their place and receive our messages; and makes an
+/// exceeded file size limit a failed write instead of the end of the program.
 void prepare_streams();
 
 /// Writes to stderr. Failure is ignored: it is no reason to end an hour's work.
@@ -43,8 +43,8 @@ class TextFiles {
     std::vector<Entry> files_;
 };
 
-/// Refuses outputs that cannot be written, or that would replace a file that has been read: to be
-/// called after the inputs are known and before the work. Empty names are passed over. Throws
+/// Rejects outputs that cannot be written, or that would replace a file that has been read: to be
+/// called after the inputs are known and before the work. Empty names are ignored. Throws
 /// IoError.
 void check_outputs(std::initializer_list<std::filesystem::path> outputs);
 

@@ -61,8 +61,8 @@ void open_browser(const std::string& address) {
     if (failure != 0) print_message("no browser was found; open this address in one\n");
 }
 
-// Pictures of many megabytes come and go on many threads for hours. By default, glibc keeps such
-// memory for each of them once it has been freed: the process would grow for as long as lamps are
+// Pictures of many megabytes are allocated and freed on many threads for hours. By default, glibc
+// keeps freed memory in an arena per thread, so that the process would grow as long as lamps are
 // dragged.
 void return_large_memory() {
     constexpr int k_large_bytes = 1 << 20, k_max_arenas = 4;

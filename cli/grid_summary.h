@@ -9,7 +9,7 @@
 
 namespace uw {
 
-/// What the user is told about one grid in use: metres per voxel, world bounds, concentrations,
+/// The summary for the user of one grid in use: metres per voxel, world bounds, concentrations,
 /// placement, and the optical depth across it per band.
 Report report_on_grid(const VolumeReport& volume, const Medium& medium);
 std::string describe_grid(const VolumeReport& volume, const Medium& medium);  // as text

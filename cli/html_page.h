@@ -11,7 +11,7 @@
 
 namespace uw {
 
-/// What became of a check.
+/// The outcome of a check.
 enum class Verdict : std::uint8_t { none, passed, failed, not_compared };
 
 /// "passed" or "FAILED", in colour.
@@ -25,10 +25,10 @@ struct ReportTable {
         Verdict verdict = Verdict::none;
     };
     std::vector<std::string> headings;
-    std::size_t names;  // that many columns come first, and hold no numbers
+    std::size_t names;  // number of leading columns that contain no numbers
     std::vector<Row> rows{};
 
-    /// Indented lines. Rows of what failed are red if `colour` is set.
+    /// Indented lines. Rows of failed checks are red if `colour` is set.
     std::string text(bool colour) const;
     /// A table element; the cells are text, and are escaped.
     std::string html() const;

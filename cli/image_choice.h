@@ -10,8 +10,8 @@
 
 namespace uw {
 
-/// The camera of a rig that --camera names, by its index. Throws UsageError that names those there
-/// are.
+/// The camera of a rig that --camera names, by its index. Throws UsageError that lists the existing
+/// ones.
 std::size_t camera_called(const std::string& name, const std::vector<RigCameraDesc>& cameras);
 
 /// The one camera that a command works with: the scene's own if it has no rig, else the one named,

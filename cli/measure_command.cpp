@@ -83,7 +83,7 @@ struct SensorReadings {
     std::vector<Reading> readings;
     std::optional<WaterLeaving> leaving;  // at the surface above the first
 
-    /// -d ln Ed / d way along the line before point `i` [1/m]; none at the first.
+    /// -d ln Ed / ds along the line before point `i` [1/m]; none at the first.
     std::optional<double> attenuation(std::size_t i, std::size_t band) const {
         if (i == 0) return std::nullopt;
         const double way = glm::dot(readings[i - 1].point - readings[i].point, sensor->up);

@@ -42,7 +42,7 @@ bool is_same_word(std::string_view a, std::string_view b) {
         a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-/// NaN for `nan`; none for what is no number.
+/// NaN for `nan`; none if the cell is not a number.
 std::optional<double> coordinate_in(std::string_view cell) {
     if (is_same_word(cell, "nan")) return std::numeric_limits<double>::quiet_NaN();
     double value = 0;
@@ -50,7 +50,7 @@ std::optional<double> coordinate_in(std::string_view cell) {
     return value;
 }
 
-bool holds_numbers(const std::vector<std::string_view>& cells) {
+bool contains_numbers(const std::vector<std::string_view>& cells) {
     return std::ranges::all_of(
         cells, [](std::string_view cell) { return coordinate_in(cell).has_value(); });
 }
@@ -77,7 +77,7 @@ CoordinateTable::CoordinateTable(std::string text, std::string name, NameSets na
             continue;
         }
         read_header(line, line_number, names);
-        if (holds_numbers(csv_cells(line))) read_row(line, line_number);
+        if (contains_numbers(csv_cells(line))) read_row(line, line_number);
     }
     if (lines_.empty())
         throw InputError(
@@ -88,7 +88,7 @@ CoordinateTable::CoordinateTable(std::string text, std::string name, NameSets na
 
 void CoordinateTable::read_header(std::string_view line, int line_number, NameSets names) {
     const std::vector<std::string_view> cells = csv_cells(line);
-    if (holds_numbers(cells)) {
+    if (contains_numbers(cells)) {
         if (cells.size() != width_)
             throw InputError(fmt::format(
                 "{}:{}: {} without a header; name the columns in a first line, such as "
@@ -238,8 +238,8 @@ Options points_options(PointsArguments& a, std::string table_name, std::string t
     return options;
 }
 
-/// The scene that the arguments name as one camera sees it, without what neither refracts nor
-/// occludes: volumes and lamps.
+/// The scene that the arguments name, for one camera, without volumes and lamps, which neither
+/// refract nor occlude.
 ImageScene observed_scene(const PointsArguments& a) {
     SceneDesc desc = load_scene(a.scene, a.overrides);
     desc.volumes.clear();

@@ -4,8 +4,8 @@
 
 namespace uw {
 
-/// Lets Ctrl-C (SIGINT, SIGTERM) end the program at once with exit code 130 and a one-line message:
-/// right as long as nothing is being written.
+/// Lets Ctrl-C (SIGINT, SIGTERM) end the program at once with exit code 130 and a one-line message,
+/// which is safe as long as nothing is being written.
 void install_stop_signal();
 
 /// From now on Ctrl-C requests an orderly stop, which sets stop_flag(); a second one ends the

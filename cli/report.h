@@ -9,7 +9,7 @@
 
 namespace uw {
 
-/// What a command found out, built once and printed as text for people or as JSON for programs: a
+/// The results of a command, built once and printed as text for people or as JSON for programs: a
 /// tree of reports. A report holds values under keys, which only JSON shows, lines, which only text
 /// shows, and further reports, which both show, all in the order in which they were added.
 class Report {

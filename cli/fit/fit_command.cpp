@@ -201,7 +201,7 @@ std::vector<Prior> priors_of(const FitArguments& a, const SceneUnknowns& unknown
     return priors;
 }
 
-/// Lets unknown exposures begin where the pictures are as bright as the scene.
+/// Sets the initial values of unknown exposures so that the pictures are as bright as the scene.
 void begin_exposures(SceneUnknowns& unknowns, PictureResiduals& pictures) {
     std::vector<double> start;
     bool has_exposures = false;
@@ -216,7 +216,7 @@ void begin_exposures(SceneUnknowns& unknowns, PictureResiduals& pictures) {
             unknowns.begin_at(i, exposures[unknowns.all()[i].picture]);
 }
 
-/// The scene's text with what --set changed and what was found, and all else as it was.
+/// The scene's text with the changes by --set and the values found, and otherwise unchanged.
 std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
                         const FitResult& result) {
     SceneText text(
@@ -234,8 +234,8 @@ std::string fitted_text(const FitArguments& a, const SceneUnknowns& unknowns,
     return text.text();
 }
 
-/// Refuses to replace a file that the command line does not name, unless it is what is written
-/// there, as by the same command before.
+/// Refuses to replace a file that the command line does not name, unless it has the same contents,
+/// as after the same command.
 void refuse_other_file(const std::filesystem::path& file, const std::string& content) {
     std::error_code error;
     if (!std::filesystem::exists(std::filesystem::symlink_status(file, error))) return;
@@ -340,7 +340,7 @@ void run_fit(const FitArguments& a) {
         Progress progress("fit", "", 1, a.quiet ? ProgressForm::none : a.progress);
         double done = 0;
         options.progress = [&](const std::string& stage, double) {
-            done += (1 - done) * 0.05;  // how many steps it takes, nobody knows
+            done += (1 - done) * 0.05;  // the number of steps is not known
             progress.update(done, stage);
         };
         result = robust_fit(*observations, unknowns, options);

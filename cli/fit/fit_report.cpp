@@ -24,7 +24,7 @@ std::string with_unit(const std::string& number, const SceneUnknown& unknown) {
     return unknown.unit.empty() ? number : number + " " + unknown.unit;
 }
 
-/// A number with the digits that its error leaves meaning in.
+/// A number with its significant digits, by its error.
 std::string to_its_error(double value, double error) {
     if (!std::isfinite(error) || !(error > 0)) return fmt::format("{:.6g}", value);
     const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(error))), 0, 12);
@@ -297,7 +297,7 @@ PlotFigure FitReport::residual_figure() const {
     return figure;
 }
 
-/// Pictures as seen, as predicted, and how they differ.
+/// The observed pictures, the predicted ones, and their differences.
 std::string FitReport::picture_figures() const {
     const HtmlPictures pictures;
     std::string html;

@@ -15,13 +15,13 @@ namespace uw {
 class FitReport {
   public:
     /// `pictures`: the observations, if they are of pictures; else null. `poses`: of the images,
-    /// if they were found. `questions`: what may have been meant otherwise, in sentences.
+    /// if they were found. `questions`: doubts about the input, in sentences.
     FitReport(const Observations& observations, const PictureResiduals* pictures,
               const FitResult& result, std::vector<FoundPose> poses = {},
               std::vector<std::string> questions = {});
 
     std::string printed(bool as_json) const;
-    /// A self-contained page: values, what cannot be told, residuals.
+    /// A self-contained page: values, undetermined unknowns, residuals.
     std::string page(const std::string& scene) const;
     /// A row per point or cell: its image, where it is there [pixels], its residuals, and whether
     /// it was left out.
@@ -39,7 +39,7 @@ class FitReport {
     std::vector<std::string> doubts_;
 };
 
-/// What a fit cannot tell, and what is nearly so, in sentences with the hint.
+/// What a fit cannot determine, or hardly can, in sentences with hints.
 std::vector<std::string> doubts(const FitResult& result);
 
 }  // namespace uw

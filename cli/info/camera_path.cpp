@@ -116,7 +116,7 @@ constexpr double k_gap = std::numeric_limits<double>::quiet_NaN();  // breaks a 
 // Cells of the map, whose panel is about as much wider than high.
 constexpr int k_map_columns = 300, k_map_rows = 180;
 
-/// What of the world the map shows, in x and -z: all of the path, and the surfaces around it.
+/// The part of the world that the map shows, in x and -z: the path and the surfaces around it.
 struct MapFrame {
     double x = 0, y = 0;  // of its lower left corner
     double width = 1, height = 1;
@@ -148,7 +148,7 @@ struct MapFrame {
     double row(int j) const { return y + height * j / k_map_rows; }
 };
 
-/// The object that is seen from above in every cell; 0: none.
+/// The object that is visible from above in every cell; 0: none.
 std::vector<std::uint32_t> objects_from_above(const MapFrame& map, const PathSurvey& path,
                                               const Surfaces& surfaces) {
     std::vector<std::uint32_t> objects(k_map_columns * k_map_rows, 0);
@@ -168,7 +168,7 @@ std::vector<std::uint32_t> objects_from_above(const MapFrame& map, const PathSur
     return objects;
 }
 
-/// The borders between what is seen from above.
+/// The borders between the objects that are visible from above.
 PlotCurve outlines(const MapFrame& map, const PathSurvey& path, const Surfaces& surfaces) {
     const std::vector<std::uint32_t> objects = objects_from_above(map, path, surfaces);
     const auto object = [&](int i, int j) {

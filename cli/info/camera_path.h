@@ -20,16 +20,16 @@ struct PathPoint {
     double height = 0;  // above the surface right below [m]; infinite: there is none
 };
 
-/// The way of the camera, of a rig the first one, through a scene.
+/// The path of the camera (of a rig, the first one) through a scene.
 struct PathSurvey {
     FrameRange frames;
     std::vector<PathPoint> points;  // of all frames, or of 2000 evenly spaced ones
-    bool is_y_up = true;            // else -y is up, as the camera sees it
+    bool is_y_up = true;            // else -y is up, by the camera's orientation
     double length = 0;              // [m]
     double top_speed = 0;           // between successive points [m/s]
     /// The first point without a surface below it, after one that has one.
     std::optional<std::size_t> leaves_floor;
-    /// The first point that is behind a surface seen from the one before, and its name.
+    /// The first point that a surface hides from the one before, and the surface's name.
     std::optional<std::size_t> enters;
     std::string entered;
 };

@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// `text` with "~" for the user's folder, whose name is nobody else's business.
+/// `text` with "~" for the user's folder, to protect privacy.
 std::string without_home(std::string text) {
     const char* const home = std::getenv("HOME");
     const std::string_view folder = home != nullptr ? home : "";
@@ -137,7 +137,7 @@ std::string file_line(const fs::path& file, std::string_view what) {
     return fmt::format("{}: {}, {}\n", file.string(), what, size);
 }
 
-/// Each file that the scene is read from, or why that cannot be told.
+/// Each file from which the scene is read, or why these are not known.
 std::string scene_files(const FaultReportOf& of) {
     try {
         SideFiles side_files;

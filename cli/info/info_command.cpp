@@ -44,7 +44,7 @@ struct InfoArguments {
     bool scene = false;             // --scene: print a whole scene instead, of a VDB file
     fs::path picture;               // --picture: a thumbnail of that scene; empty: none
     fs::path svg;                   // --svg: the camera's path over a scene; empty: none
-    bool report = false;            // --report: what whoever reports a fault is asked for
+    bool report = false;            // --report: the information for a bug report
 };
 
 const char* const k_info_examples = R"(Examples:
@@ -245,12 +245,12 @@ std::string info_on_vdb(const InfoArguments& a) {
     return report_on_vdb(survey).printed(a.json);
 }
 
-/// How clearly the volumes of a scene are seen in a draft of this width. Leaves them loaded.
+/// How clearly the volumes of a scene are visible in a draft of this width. Leaves them loaded.
 DraftContrast draft_contrast(Renderer& renderer, const ImageScene& scene, int width) {
     const ImageScene with = quick_draft_of(scene, width);
     renderer.set_scene(with.with([](SceneDesc& desc) {
         desc.volumes.clear();
-        // The light of a volume is a lamp, which names its volume.
+        // An emissive volume is a lamp, which names its volume.
         std::erase_if(desc.lamps,
                       [](const LampDesc& lamp) { return lamp.emissive_volume.has_value(); });
     }));
@@ -261,8 +261,8 @@ DraftContrast draft_contrast(Renderer& renderer, const ImageScene& scene, int wi
     return compare_drafts(renderer.assembled(), film, before);
 }
 
-/// The same; none if the scene has no volume, or no lamp to see it by but the light of volumes:
-/// without them its picture is black.
+/// The same; none if the scene has no volume, or no lamps other than emissive volumes: the picture
+/// without these would be black.
 std::optional<DraftContrast> draft_contrast(Renderer& renderer, const ImageScene& scene) {
     const auto is_emissive = [](const LampDesc& lamp) { return lamp.emissive_volume.has_value(); };
     if (scene.desc().volumes.empty() || std::ranges::all_of(scene.desc().lamps, is_emissive))

@@ -4,8 +4,8 @@
 
 namespace uw {
 
-/// `uwvdb info`: prints what a VDB file or a scene holds, in metres, and what to fix, as text or
-/// JSON. Throws UsageError, InputError and IoError of one line each.
+/// `uwvdb info`: prints the contents of a VDB file or a scene, in metres, and what to fix, as text
+/// or JSON. Throws UsageError, InputError and IoError of one line each.
 Command info_command();
 
 }  // namespace uw

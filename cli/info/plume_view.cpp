@@ -102,7 +102,7 @@ ImageScene quick_draft_of(const ImageScene& scene, int width) {
 
 namespace {
 
-constexpr double k_filled = 0.9;  // of the picture, by the box
+constexpr double k_filled = 0.9;  // fraction of the picture that the box fills
 constexpr const char* k_water = "jerlov-II";
 
 /// The camera's axes in the world, unit.
@@ -223,15 +223,15 @@ std::string proposal_yaml(const SceneProposal& p) {
 
 namespace {
 
-// What is sought: a contrast well above what is plain to see, as other water and lamps will have
-// less, rays that see through most of the volume, and a volume that is no black shape.
+// The goals: a contrast well above clear visibility, as other water and lamps will give less, rays
+// that pass through most of the volume, and a volume that is not a black shape.
 constexpr double k_wanted_contrast = 0.6;
 constexpr double k_max_depth = 2.5;
 constexpr double k_min_brightness = 0.03;
 constexpr int k_max_drafts = 8, k_max_pictures = 3;  // of one water and one kind of light
 constexpr std::array k_waters{"jerlov-II", "jerlov-IB"};
 
-/// Counts what is rendered, for whoever waits for it.
+/// Counts the drafts for the progress display.
 class DraftCount {
   public:
     explicit DraftCount(const InfoProgress& progress) : progress_(progress) {}
@@ -311,8 +311,8 @@ bool will_do(const DraftContrast& draft) {
     return is_fit(draft) && draft.contrast >= k_plain_to_see;
 }
 
-/// Whether `a` is to be preferred: what is fit if it is plain to see, then the clearer, up to what
-/// is wanted, then the less opaque.
+/// Whether `a` is to be preferred: first a draft that is acceptable and clearly visible, then the
+/// one with more contrast, up to the goal, then the less opaque one.
 bool is_better(const DraftContrast& a, const DraftContrast& b) {
     if (will_do(a) != will_do(b)) return will_do(a);
     const auto clear = [](const DraftContrast& d) {
@@ -327,7 +327,7 @@ void improve(Drafts& drafts, int most, double& best_factor, DraftContrast& best)
     double factor = best_factor;
     const bool raise = best.contrast < k_wanted_contrast && best.depth < k_max_depth;
     for (int n = 1; n < most && !is_good(best); ++n) {
-        // Where most of the volume is far thinner than its densest part, in one step.
+        // If most of the volume is far thinner than its densest part, this takes one step.
         const double step = std::clamp(1 / std::max(best.depth, 1e-12), 2.0, 1e9);
         factor *= raise ? step : 0.5;
         const DraftContrast draft = drafts.at(factor);
@@ -353,7 +353,7 @@ PlumeView view_in(const char* water, const VolumeDesc& volume, const Bounds& bou
     improve(*drafts, k_max_drafts, view.factor, view.draft);
     count.next("the light that single scattering leaves out");
     view.left_out = drafts->light_left_out(view.factor);
-    // A scene is judged by its picture: other light makes another.
+    // The scene is judged by its picture, which depends on the light.
     drafts.emplace(view.proposal, volume, k_picture_width,
                    view.needs_all_light() ? Scattering::multiple : Scattering::single, count);
     view.draft = drafts->at(view.factor);
@@ -370,7 +370,7 @@ PlumeView view_plume(const VolumeDesc& volume, const Bounds& bounds, const InfoP
         PlumeView view = view_in(water, volume, bounds, count);
         if (best.proposal.lamps.empty() || is_better(view.draft, best.draft))
             best = std::move(view);
-        // All light takes seconds: what is plain to see in it will do.
+        // Rendering all light takes seconds: clear visibility suffices.
         if (is_good(best.draft) || (best.needs_all_light() && will_do(best.draft))) break;
     }
     return best;

@@ -14,11 +14,11 @@
 
 namespace uw {
 
-/// How clearly the volumes of a scene are seen, from two pictures of it. Light is that of the
+/// How clearly the volumes of a scene are visible, from two pictures of it. Light is that of the
 /// picture's R, G and B as luminance, so water and backscatter before the volumes count.
 struct DraftContrast {
     /// The contrast of a pixel is |with - without| / max(without, mean of the picture without);
-    /// this is the 99th percentile of the pixels that see the volumes.
+    /// this is the 99th percentile over the pixels whose rays pass through the volumes.
     double contrast = 0;
     /// The median of these pixels: far below it where a few of them carry the contrast.
     double median_contrast = 0;
@@ -39,16 +39,16 @@ DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, cons
 /// once or all of it, at most `width` pixels wide (run/draft.h).
 ImageScene quick_draft_of(const ImageScene& scene, int width);
 
-/// The width of drafts, and of those of volumes too small to be seen in these.
+/// The width of drafts, and of the finer ones for volumes that are too small to be visible in them.
 inline constexpr int k_draft_width = 128, k_fine_draft_width = 512;
 /// Volumes that cover less of the image than this fraction need the finer draft.
 inline constexpr double k_min_seen = 0.002;
 
-/// A plume that changes the picture by less than this will hardly be noticed; at the second it is
-/// plain to see.
+/// A plume with less contrast than the first is hardly noticeable; from the second on it is clearly
+/// visible.
 inline constexpr double k_hardly_seen = 0.05, k_plain_to_see = 0.3;
 
-/// A lamp with a beam just wide enough for what it is aimed at.
+/// A lamp with a beam just wide enough for its target.
 struct ProposedLamp {
     std::string name;
     Point3 position;       // world [m]
@@ -57,7 +57,7 @@ struct ProposedLamp {
     double intensity = 0;  // on the axis [W/sr], the same in all bands
 };
 
-/// A view of what lies within a box: camera, lamps, a floor under it and the water.
+/// A view of the contents of a box: camera, lamps, a floor under it and the water.
 struct SceneProposal {
     Point3 eye, target;
     std::vector<ProposedLamp> lamps;
@@ -73,9 +73,9 @@ inline constexpr double k_proposed_fov = 60;
 inline constexpr int k_picture_width = k_proposed_width / 2,
                      k_picture_height = k_proposed_height / 2;
 
-/// From the side on which the box is broad, a little above, so near that it just fits into nine
-/// tenths of the picture. One lamp beside the camera and one behind the box, both out of the
-/// picture, so that they light the box and little of the water before it.
+/// Views the broad side of the box from a little above, so near that it just fits into nine tenths
+/// of the picture. One lamp is beside the camera and one behind the box, both out of the picture,
+/// so that they light the box and little of the water in front of it.
 SceneProposal propose_scene(const Bounds& bounds);
 
 /// The scene file without its volumes: `uwvdb: 1`, camera, water, geometry and lamps.
@@ -95,15 +95,15 @@ struct PlumeView {
     bool needs_all_light() const { return left_out && left_out->matters(); }
 };
 
-/// Hears how much of the work on a file is done, 0 to 1, and what is next.
+/// Receives the progress of the work on a file, 0 to 1, and the next step.
 using InfoProgress = std::function<void(double done, const std::string& next)>;
 inline void ignore_progress(double /*done*/, const std::string& /*next*/) {}
 
-/// Proposes a scene around `bounds`, which hold what `volume` holds, and searches by drafts for
-/// concentrations, and only then for clearer water, that make the volume plain to see without being
-/// opaque: first by small drafts in which light is scattered once, then, where that leaves out much
-/// of it, by the picture in all light. There are at most some thirty of them, whatever the volume.
-/// `volume` names a file, not a sequence. Throws InputError if it cannot be loaded.
+/// Proposes a scene around `bounds`, those of the contents of `volume`, and searches by drafts for
+/// concentrations, and only then for clearer water, at which the volume is clearly visible but not
+/// opaque: first by small drafts with single scattering, then, if that leaves out much light, by
+/// the picture in all light. At most some thirty drafts are rendered, whatever the volume. `volume`
+/// names a file, not a sequence. Throws InputError if it cannot be loaded.
 PlumeView view_plume(const VolumeDesc& volume, const Bounds& bounds,
                      const InfoProgress& progress = ignore_progress);
 

@@ -24,7 +24,7 @@ namespace uw {
 namespace {
 
 constexpr double k_invisible_depth = 0.01;
-// Whatever lies behind this optical depth is taken to be black.
+// Anything behind this optical depth is taken to be black.
 constexpr double k_opaque_depth = 10;
 // A fraction of a grid in view that is most likely a mistake.
 constexpr double k_little_in_view = 1e-3;
@@ -95,7 +95,7 @@ void warn_of_surfaces(const SceneSurvey& survey, std::vector<std::string>& warni
             100 * view.hidden, k_opaque_depth));
 }
 
-/// What makes volumes in view hard to see, and the hint.
+/// The reasons why volumes in view are hard to see, with hints.
 void warn_of_contrast(const SceneSurvey& survey, std::vector<std::string>& warnings) {
     if (!survey.contrast || survey.contrast->seen == 0) return;
     const DraftContrast& draft = *survey.contrast;
@@ -132,7 +132,7 @@ constexpr int k_points = 32;                // along each side of a grid's bound
 constexpr int k_columns = 48, k_rows = 27;  // rays over the image
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
 
-/// Optical depths between points, and what lamps reach.
+/// Optical depths between points, and whether lamps light points.
 class Reach {
   public:
     explicit Reach(const AssembledScene& scene) : scene_(scene), attenuation_(scene.water.medium) {}

@@ -15,19 +15,18 @@
 
 namespace uw {
 
-/// A place is in reach of a lamp if it lies in its beam, no surface is between, and in some
-/// band the lamp's light arrives with more than this fraction of what the lamp gives on its axis at
-/// 1 m without water: profile e^-tau / r^2.
+/// A point is lit by a lamp if it lies in its beam, no surface is between, and in some band the
+/// irradiance exceeds this fraction of that on the axis at 1 m without water: profile e^-tau / r^2.
 inline constexpr double k_reach = 1e-3;
 
-/// One grid of the scene. Fractions are of what the grid holds: the sum of its values.
+/// One grid of the scene. Fractions are of the sum of its values.
 struct GridSurvey {
     VolumeReport report;
     std::array<std::vector<double>, 3> depth;  // through its centre along world x, y, z, per band
     double in_view = 0;                        // within the image and behind no surface
     double in_reach = 0;                       // of at least one lamp
     double in_both = 0;
-    double hidden = 0;          // within the image, but behind that object which hides most of it
+    double hidden = 0;          // within the image, but behind the object that hides most of it
     std::string hidden_behind;  // that object, "'hull' (geometry[0])"; empty: nothing hides any
 };
 
@@ -48,7 +47,7 @@ struct ViewSurvey {
     double nearest = 0, farthest = 0;  // surface [m]
 };
 
-/// What a scene's variations draw.
+/// The values that a scene's variations draw.
 struct VariationsSurvey {
     VariationsDesc desc;
     std::vector<std::vector<DrawnValue>> first;  // the values of the first few

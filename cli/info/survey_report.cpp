@@ -167,7 +167,7 @@ Report report_on_geometry(const AssembledScene& scene) {
     return report;
 }
 
-/// What `uwvdb render` will make of the scene.
+/// How `uwvdb render` will render the scene.
 Report report_on_render(const SceneSurvey& survey) {
     const RenderDesc& render = survey.scene.desc().render;
     const std::string integrator = word_of(render.integrator, k_integrator_names);

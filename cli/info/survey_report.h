@@ -5,7 +5,7 @@
 
 namespace uw {
 
-/// What was found of a scene, and the warnings about it (docs/command-line.md has the keys).
+/// The survey of a scene, and the warnings about it (docs/command-line.md has the keys).
 Report report_on_scene(const SceneSurvey& survey);
 
 }  // namespace uw

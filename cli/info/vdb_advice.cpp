@@ -44,7 +44,7 @@ bool is_level_set_in_disguise(const GridInspection& grid) {
            (grid.values->background_value > 0 || is_name_of_distances(grid.summary.base_name));
 }
 
-/// Its grids that hold the surface or the particles of a simulated liquid.
+/// Its grids that contain the surface or the particles of a simulated liquid.
 std::vector<std::string> grids_of_liquid(const VdbInspection& inspection) {
     std::vector<std::string> names;
     for (const GridInspection& grid : inspection.grids) {
@@ -82,8 +82,8 @@ bool can_be_mapped(const GridInspection& grid) {
            !is_level_set_in_disguise(grid);
 }
 
-/// Whether it is a level set whose inside can be taken as fog. The surface of a liquid is none:
-/// what lies within is water.
+/// Whether it is a level set whose interior can become fog. The surface of a liquid cannot: its
+/// interior is water.
 bool is_fillable(const GridInspection& grid) {
     const std::string name = lower_case(grid.summary.base_name);
     const bool is_liquid =
@@ -111,7 +111,7 @@ const GridInspection* likeliest_grid(const VdbInspection& inspection) {
     return level_set == inspection.grids.end() ? nullptr : &*level_set;
 }
 
-/// Decides `advice.map`, and sets `advice.bounds` to what these grids hold.
+/// Decides `advice.map`, and sets `advice.bounds` to the bounds of these grids.
 void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
     const GridInspection* const chosen = likeliest_grid(inspection);
     if (chosen == nullptr) {
@@ -158,7 +158,7 @@ void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
                         advice.map.size(), chosen->summary.base_name, list(advice.map)));
 }
 
-/// Grids with valid values that hold something other than a concentration.
+/// Grids with valid values that are not concentrations.
 void say_what_to_leave(const VdbInspection& inspection, VdbAdvice& advice) {
     std::vector<std::string> others;
     for (const GridInspection& grid : inspection.grids) {
@@ -200,7 +200,7 @@ void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
 constexpr std::size_t k_max_sampled = 6;
 constexpr std::size_t k_max_faults = 3;
 
-/// Whether a grid of the file may hold a concentration, as far as its header tells.
+/// Whether a grid of the file may contain a concentration, by its header.
 bool may_hold_something(const VdbHeader& header) {
     return std::ranges::any_of(header.grids, [](const GridSummary& grid) {
         const bool is_level_set =
@@ -213,7 +213,7 @@ bool may_hold_something(const VdbHeader& header) {
 
 // Larger than lamps can light under water; too small to be the intended size [m].
 constexpr double k_too_large = 12, k_too_small = 0.05;
-constexpr double k_convenient = 2;  // what is brought to scale becomes this large
+constexpr double k_convenient = 2;  // the size to which volumes are scaled
 
 double longest_side(const Bounds& b) {
     return std::max({b.max.x - b.min.x, b.max.y - b.min.y, b.max.z - b.min.z});
@@ -283,7 +283,7 @@ void say_domain(const VdbInspection& inspection, VdbAdvice& advice) {
         edge * count[1]));
 }
 
-/// Where Blender has the domain, in the scene's axes; empty if that is not known.
+/// The position of the domain in Blender, in the scene's axes; empty if it is not known.
 std::optional<Affine> place_in_blender(const VdbInspection& inspection) {
     if (inspection.placement.up != UpAxis::z) return std::nullopt;
     const auto domain = find_fluid_domain(inspection.header);
@@ -292,7 +292,7 @@ std::optional<Affine> place_in_blender(const VdbInspection& inspection) {
     return upright * *domain->blender_from_domain * upright.inverse();
 }
 
-/// Which way is up and where values lie, by the program that wrote the file.
+/// The up axis and the centering of values, by the program that wrote the file.
 void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
     const VdbHeader& header = inspection.header;
     const std::string up =
@@ -334,7 +334,7 @@ void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
         up, hint));
 }
 
-/// The place that a volume has by the file's transform and what is advised.
+/// The placement of a volume by the file's transform and the advice.
 Affine placing(const VdbAdvice& advice) {
     return Affine::translation(advice.translate) * Affine::rotation_xyz_degrees(advice.rotate) *
            Affine::scale(advice.scale * advice.mirror);
@@ -380,7 +380,7 @@ Turn turn_of(const Matrix3& axes) {
     return turn;
 }
 
-/// Decides `mirror`, `rotate` and `translate`. `has_size`: the file's transform means something.
+/// Decides `mirror`, `rotate` and `translate`. `has_size`: the file's transform is meaningful.
 void say_place(const VdbInspection& inspection, bool has_size, VdbAdvice& advice) {
     const double side = advice.scale * longest_side(advice.bounds);
     if (const auto place = place_in_blender(inspection)) {
@@ -569,8 +569,8 @@ namespace {
 
 constexpr double k_wanted_depth = 1.5;
 constexpr double k_large_per_small = 5;
-constexpr double k_max_small = 1e12 / k_large_per_small;  // what scenes take of both [ppm]
-/// Beyond these no values are ppm, whatever the plume.
+constexpr double k_max_small = 1e12 / k_large_per_small;  // the limit of scenes on both [ppm]
+/// Values beyond these are not ppm, whatever the plume.
 constexpr double k_min_usual = 1e-6, k_max_usual = 1e6;
 constexpr std::size_t k_wanted_band = 1;         // of the default bands: 540 nm
 constexpr int k_lines = 24, k_fewest_lines = 4;  // across each side
@@ -590,8 +590,8 @@ double max_value(const VdbInspection& inspection, const VdbAdvice& advice) {
     return advice.level_sets == LevelSets::fog || !(largest > 0) ? 1 : largest;
 }
 
-/// What concentration drafts begin with [ppm per unit]: 1, or for values that 1 ppm would take to
-/// no water as much as makes the largest of them 1 ppm.
+/// The concentration with which drafts begin [ppm per unit]: 1, or for values too large or too
+/// small for that, the one that makes the largest of them 1 ppm.
 double first_small_ppm(const VdbInspection& inspection, const VdbAdvice& advice) {
     const double largest = max_value(inspection, advice);
     return largest < k_min_usual || largest > k_max_usual ? 1 / largest : 1;
@@ -634,7 +634,7 @@ std::vector<double> across_voxel(const LoadedVolume& volume, const Medium& mediu
     return depth;
 }
 
-/// What all voxels that are not 0 lie in.
+/// The bounds of all voxels that are not 0.
 Bounds bounds_of(const LoadedVolume& volume) {
     Bounds bounds;
     for (const GridVolume& grid : volume.grids) bounds.extend(grid.voxel_bounds());
@@ -655,8 +655,8 @@ std::vector<std::pair<Point3, Point3>> lines_along(const Bounds& bounds, int axi
     return lines;
 }
 
-/// How many lines on a side of the bounds are affordable, whatever the grids hold: by the regions
-/// that a few of them meet.
+/// How many lines along a side of the bounds are affordable, whatever the grids contain, estimated
+/// by the regions that a few of them meet.
 int affordable_lines(const GridField& field, const Bounds& bounds, int axis) {
     double regions = 0;
     for (const auto& [a, b] : lines_along(bounds, axis, k_fewest_lines))
@@ -749,7 +749,7 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
 
 namespace {
 
-/// Whether some of the active voxels of the mapped grids hold nothing, as those of dense grids do.
+/// Whether some of the active voxels of the mapped grids are empty, as in dense grids.
 bool has_empty_voxels(const VdbInspection& inspection, const VdbAdvice& advice) {
     return std::ranges::any_of(inspection.grids, [&](const GridInspection& grid) {
         return std::ranges::count(advice.map, grid.summary.name) > 0 && grid.values &&
@@ -757,8 +757,8 @@ bool has_empty_voxels(const VdbInspection& inspection, const VdbAdvice& advice) 
     });
 }
 
-/// What the mapped grids hold, in the file's size and place but for those that are known to be
-/// wrong.
+/// The contents of the mapped grids, with the file's size and placement unless these are known to
+/// be wrong.
 Bounds held_by(const VdbInspection& inspection, const VdbAdvice& advice) {
     if (has_empty_voxels(inspection, advice)) {
         try {
@@ -789,7 +789,7 @@ Bounds held_by(const VdbInspection& inspection, const VdbAdvice& advice) {
     return bounds;
 }
 
-/// How much the likeliest grid holds: the sum of its values.
+/// The contents of the likeliest grid: the sum of its values.
 double content_of(const VdbInspection& inspection) {
     const GridInspection* const grid = likeliest_grid(inspection);
     if (is_fillable(*grid)) return static_cast<double>(grid->values->negative);
@@ -842,7 +842,7 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
     if (advice.fps) advice.scene += fmt::format("  fps: {:.6g}\n", *advice.fps);
 }
 
-/// What values may mean that are far from any concentration in ppm.
+/// The possible meaning of values that are far from any concentration in ppm.
 void say_unit(const VdbInspection& inspection, VdbAdvice& advice) {
     const double largest = max_value(inspection, advice);
     const std::string& name = advice.map.front();

@@ -14,14 +14,15 @@ namespace uw {
 /// How to use a file's grids, in words and as part of a scene.
 struct VdbAdvice {
     std::vector<std::string> lines;  // one sentence or two each
-    std::vector<std::string> map;    // the grids to map, as scenes address them; empty: none is fit
+    std::vector<std::string>
+        map;  // the grids to map, as scenes address them; empty: none is suitable
     LevelSets level_sets = LevelSets::refused;  // fog where these are level sets
     std::optional<double> voxel_size;  // to give, where the file's is known to be wrong [m]
     double scale = 1;                  // to apply, 1 where the file's size is plausible
     Vector3 mirror{1};  // to apply with it: -1 along the axis in which Blender mirrors the domain
     Vector3 rotate{0};  // to apply: 0, or what the domain was turned by in Blender [degrees]
-    /// To apply: 0, or where Blender has the domain, or what brings a faraway volume to the origin,
-    /// or one without a size onto y = 0 [m].
+    /// To apply: 0, or the position of the domain in Blender, or the translation that brings a
+    /// distant volume to the origin, or one without a size onto y = 0 [m].
     Vector3 translate{0};
     std::optional<double> fps;            // frames a second of a sequence, where its files tell
     double small_ppm = 0, large_ppm = 0;  // per unit of grid value
@@ -40,8 +41,8 @@ struct VdbAdvice {
 /// ASCII letters in lower case, for names in which case means nothing.
 std::string lower_case(std::string text);
 
-/// How likely a grid of this name holds a concentration: 0 certainly not, 1 something else from
-/// which a concentration can be guessed (heat, flames), 2 unknown, 3 likely, 4 a density.
+/// How likely a grid of this name contains a concentration: 0 certainly not, 1 something else from
+/// which a concentration can be estimated (heat, flames), 2 unknown, 3 likely, 4 a density.
 int concentration_likelihood(const std::string& name);
 
 /// One frame of a sequence, with what is in it.
@@ -50,9 +51,9 @@ struct SampledFrame {
     VdbInspection inspection;
 };
 
-/// What the frames of a sequence hold.
+/// The contents of the frames of a sequence.
 struct FrameSurvey {
-    std::vector<int> empty;             // by their headers hold nothing that could be mapped
+    std::vector<int> empty;             // frames without anything to map, by their headers
     std::vector<SampledFrame> sampled;  // some of the others, spread evenly from first to last
     std::vector<std::string> faults;    // of frames that cannot be read, one line each
 };
@@ -71,9 +72,9 @@ std::vector<double> max_values(const FrameSurvey& survey);
 /// of it. Fills in `optical_depth` and `bounds`. Throws InputError if the grids cannot be loaded.
 void start_concentrations(const VdbInspection& inspection, VdbAdvice& advice);
 
-/// Begins with these and goes on, by drafts, to what makes the plume plain to see; decides
-/// `advice.view`, extends `bounds` by those of `others`, which are in the file's size and place,
-/// and adds a line about it.
+/// Starts with these and searches by drafts for concentrations that make the plume clearly visible;
+/// decides `advice.view`, extends `bounds` by those of `others`, which are in the file's size and
+/// place, and adds a line about it.
 void choose_concentrations(const VdbInspection& inspection, const Bounds& others, VdbAdvice& advice,
                            const InfoProgress& progress = ignore_progress);
 
@@ -83,8 +84,8 @@ VdbAdvice advise_on_vdb(const VdbInspection& inspection, const std::filesystem::
                         const InfoProgress& progress = ignore_progress);
 
 /// Advice on a whole sequence from the frames that were sampled, the same whichever of them is
-/// looked at: its bounds and camera hold all of them, its concentrations suit the frame that holds
-/// most. `pattern`: the name to write into the scene.
+/// inspected: its bounds and camera enclose all of them, its concentrations suit the fullest frame.
+/// `pattern`: the name to write into the scene.
 VdbAdvice advise_on_sequence(const FrameSurvey& frames, const std::filesystem::path& pattern,
                              const InfoProgress& progress = ignore_progress);
 

@@ -15,15 +15,15 @@ struct SequenceReport {
     int frame = 0;                    // the one inspected
     std::vector<int> found, missing;  // missing: between the first and the last found
     // What sequences of volumes have, too:
-    std::vector<int> empty;       // frames that hold nothing to map
-    std::vector<int> sampled;     // frames of which all was read
+    std::vector<int> empty;       // frames with nothing to map
+    std::vector<int> sampled;     // frames that were read completely
     std::vector<double> largest;  // largest value of the grid to map, of each of these
 };
 
 /// What `uwvdb info` says about a VDB file.
 struct VdbSurvey {
     std::string file;  // as typed
-    /// From which the scene names the file; empty: the current one.
+    /// The folder relative to which the scene names the file; empty: the current one.
     std::filesystem::path scene_folder;
     SequenceReport sequence;
     VdbInspection inspection;

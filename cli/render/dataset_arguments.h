@@ -20,7 +20,7 @@ struct ShardArgument {
 
 /// `uwvdb dataset` as typed.
 struct DatasetArguments {
-    /// What is rendered, as `uwvdb render` takes it: scene, overrides, frames, size, quality,
+    /// The arguments shared with `uwvdb render`: scene, overrides, frames, size, quality,
     /// samples, threads. `output` is the set's folder, `layers` those of EXR and NumPy.
     RenderArguments image;
     std::string frames;                  // --frames as typed
@@ -48,15 +48,15 @@ std::string dataset_examples();
 /// one draw. With `check` the scenes of all draws are read. Throws as RunScenes.
 std::vector<std::vector<std::string>> draws_of(const DatasetArguments& arguments, bool check);
 
-/// The set that the arguments ask for, but for its draws. `scene`: of its first draw. Throws
+/// The set that the arguments request, without its draws. `scene`: of its first draw. Throws
 /// UsageError.
 DatasetDefinition definition_of(const DatasetArguments& arguments, const SceneDesc& scene);
 
 /// `text` as a shell reads it: in quotes if it has anything but plain characters.
 std::string shell_word(const std::string& text);
 
-/// The options that make the set, in one spelling, each after a blank: without what does not change
-/// it, which is folder, shard and threads.
+/// The options that define the set, in a canonical spelling, each after a blank: without those that
+/// do not change it (folder, shard and threads).
 std::string set_options(const DatasetArguments& arguments, const DatasetDefinition& definition);
 
 /// The scene of a draw, as the arguments ask for it. Throws as load_scene.

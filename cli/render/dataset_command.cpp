@@ -44,8 +44,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What pictures are seen through; null: sRGB. A set's bytes follow from the scene and its files,
-/// whatever the environment of the process that renders a part of it.
+/// The view of pictures; null: sRGB. A set's bytes follow from the scene and its files, whatever
+/// the environment of the process that renders a part of it.
 std::shared_ptr<const ColourView> view_of(const RenderDesc& render) {
     if (!render.view) return nullptr;
     if (render.view->config.empty())
@@ -57,14 +57,14 @@ std::shared_ptr<const ColourView> view_of(const RenderDesc& render) {
 constexpr int k_draft_width = 160;  // of the images that exposures follow from [pixels]
 constexpr std::size_t k_max_drafts = 5;
 
-/// What has to do with views of a data set, and tells its user how far it is.
+/// Base of the classes that process views of a data set and show their progress.
 class ViewClient : public RunClient {
   public:
     ViewClient(std::size_t count, ProgressForm form)
         : progress_("views", "views", static_cast<double>(count), form) {}
 
     void tell(const std::string& stage, double fraction) override {
-        // Nearly all the time that a view takes is this stage.
+        // This stage takes nearly all the time of a view.
         const double rendered = stage == "render" ? fraction : 0;
         // Computing species may take longer than all views.
         progress_.update(
@@ -91,7 +91,7 @@ class FirstLook : public ViewClient {
     void look(const Job& job) { engine_.run(job, *this); }
 
     Exposures exposures() const { return {image_.value_or(1), clean_.value_or(1)}; }
-    /// What each view lacks; a view that is rendered with all light has no entry.
+    /// The light that each view leaves out; a view that is rendered with all light has no entry.
     const std::vector<LightLeftOut>& left_out() const { return left_out_; }
 
     WantedImage want(std::size_t /*place*/, ImageScene& scene) override {
@@ -113,7 +113,7 @@ class FirstLook : public ViewClient {
     }
 
     void warn(std::size_t /*place*/, const std::string& /*line*/) override {
-        // The views themselves will be warned of.
+        // Rendering the views themselves will give the warnings.
     }
 
   private:
@@ -192,8 +192,8 @@ class ViewRenderer : public ViewClient {
     }
 
   private:
-    /// Finds what a draw's views have in common, its surface points and pinholes, and writes it
-    /// unless another process has. What is there already may be of other meshes.
+    /// Finds the data common to a draw's views, its surface points and pinholes, and writes them
+    /// unless another process has. Existing files may be of other meshes.
     void load_draw(std::size_t draw) {
         if (draw_ == draw) return;
         draw_ = draw;
@@ -215,7 +215,7 @@ class ViewRenderer : public ViewClient {
         if (!std::exchange(has_told_of_pinholes_, true)) tell_of_pinholes(fits);
     }
 
-    /// Writes a file that a draw's views have in common unless it is there as it is to be.
+    /// Writes a file that is common to a draw's views unless it exists with these contents.
     void share(const char* role, const std::string& name, const std::string& text) {
         const SetFile file{role, name, text.size(), sha256_of(text)};
         if (!is_whole(folder_, file, true)) SetFiles(folder_).add_bytes(role, name, text);
@@ -464,11 +464,11 @@ class DatasetRun {
         set_.definition = wanted;
         look_first();
         {
-            const FolderLock lock(folder);  // of several that begin at once, one says what it is
+            const FolderLock lock(folder);  // of several that begin at once, one defines the set
             if (!read_dataset_file(folder))
                 SetFiles(folder).add_bytes("set", k_dataset_file, dataset_text(set_));
         }
-        // What is read again is what all others read.
+        // Read it again, as all other processes do.
         set_ = read_dataset_file(folder).value();
         check_same_set(folder, set_.definition, wanted);
     }

@@ -124,12 +124,12 @@ void FrameRenderer::begin_stage(const std::string& stage) {
     if (stage == "splat") show("lamps", static_cast<double>(renderer.scene().desc().lamps.size()));
     const bool paths = integrator_kind(renderer.scene().desc().render.integrator).traces_paths;
     if (stage == "render" && paths)
-        show("", 1);  // of how many paths may not be known yet
+        show("", 1);  // the number of paths may not be known yet
     else if (stage == "render" || stage == "forward scatter")
         show("Mpx", 1e-6 * static_cast<double>(renderer.report().pixels));
     if (stage == "multiple scattering" || stage == "particles") show("", 1);
     if (stage == "multiple scattering" || stage == "render") begin_orderly_stop();
-    if (stage != "forward scatter") stats_.begin_stage(stage);  // which is part of "render"
+    if (stage != "forward scatter") stats_.begin_stage(stage);  // that one is part of "render"
 }
 
 WantedImage FrameRenderer::want(std::size_t place, ImageScene& scene) {

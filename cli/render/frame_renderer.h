@@ -17,8 +17,8 @@ namespace uw {
 
 std::vector<std::string> names_of(const std::vector<LampDesc>& lamps);
 
-/// What `uwvdb render` makes of the images of its run: it writes them, measures them if that is
-/// requested, and reports to the user.
+/// Renders the images of a run of `uwvdb render`, writes them, measures them if that is requested,
+/// and reports to the user.
 class FrameRenderer : public RunClient {
   public:
     /// Receives each frame that has been written, with its statistics, from any thread.

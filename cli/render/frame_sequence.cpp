@@ -67,7 +67,7 @@ bool is_sensor_image(const fs::path& file) {
             file.stem().extension() == k_sensor_ending);
 }
 
-// What only an EXR can hold, or tell. `is_light`: the file holds the light's R, G and B.
+// Requests that only an EXR can satisfy. `is_light`: the file contains the light's R, G and B.
 void refuse_exr_options(const RenderArguments& a, const OutputFormat& format, bool is_light) {
     const auto refuse = [&](bool is_given, const char* option) {
         if (!is_given) return;
@@ -86,7 +86,7 @@ void refuse_exr_options(const RenderArguments& a, const OutputFormat& format, bo
     refuse(a.resume, "--resume");
 }
 
-// What an ACES image container cannot be asked for.
+// Requests that an ACES image container cannot satisfy.
 void refuse_with_aces(const RenderArguments& a) {
     const auto refuse = [&](bool is_given, const char* option) {
         if (is_given)
@@ -394,7 +394,7 @@ void add_sensor_images(FrameSequence& sequence, const SceneDesc& scene) {
                 refuse(
                     "the camera has no sensor to make it with; add camera.sensor to the scene, "
                     "or give a name that ends in .exr or .png");
-            files.preview = std::exchange(files.sensor, {});  // a JPEG of what is to be seen
+            files.preview = std::exchange(files.sensor, {});  // a JPEG to look at
             continue;
         }
         const DevelopmentDesc::Format format = camera.sensor->image.format;

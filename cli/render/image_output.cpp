@@ -98,7 +98,7 @@ void write_images(const OutputFiles& files, const FinishedImage& image, const Im
     std::optional<HalfLoss> loss;
     if (with_light && storage.exr.precision == ExrOptions::Precision::half) loss = half_loss(film);
     {
-        // Or the EXR might be of one run and its preview of another.
+        // Otherwise the EXR might be of one run and its preview of another.
         const FolderLock lock(files.main().parent_path());
         outputs.commit();
     }

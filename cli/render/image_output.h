@@ -29,7 +29,8 @@ struct ImageStorage {
 /// Writes the image, if it has a name, likewise its preview, the camera's image if there is one,
 /// and the table of its ids if there is to be one: with what is in `outputs` already all of them
 /// whole, or none. Prints where they are and the exposure of the preview, and warns of an image
-/// that is black or empty in part, or that half floats cannot hold. Throws IoError and Interrupted.
+/// that is black or empty in part, or beyond the range of half floats. Throws IoError and
+/// Interrupted.
 void write_images(const OutputFiles& files, const FinishedImage& image, const ImageStorage& storage,
                   OutputGroup& outputs, const SayCallback& say, const SayCallback& warn);
 

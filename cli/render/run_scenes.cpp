@@ -58,7 +58,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folder that holds all images: that of their name, as far as it is one for all of them.
+// The folder of all images: that of their name, up to the part that varies.
 fs::path common_folder(const fs::path& name) {
     fs::path folder;
     for (const fs::path& part : name.parent_path()) {

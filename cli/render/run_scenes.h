@@ -48,9 +48,10 @@ class RunScenes {
     JobScenes job_;
 };
 
-/// What the variations of a whole set drew, and which images show it: SCENE.variations.csv, a row
-/// per image, and SCENE.variations.json, beside the images (docs/command-line.md). It is of the
-/// whole set, whichever of it is rendered, so that runs that share a set write the same.
+/// The manifest of a whole set: the values that its variations drew, and their images, as
+/// SCENE.variations.csv, a row per image, and SCENE.variations.json, beside the images
+/// (docs/command-line.md). It covers the whole set, whichever part is rendered, so that runs that
+/// share a set write the same.
 class VariationManifest {
   public:
     /// Writes nothing unless a whole set is requested. Refers to the arguments.

@@ -35,7 +35,7 @@ std::string time_limit(int minutes) {
 
 std::string directives(const SlurmRequest& r, const std::string& suffix, int minutes,
                        const std::string& log) {
-    // A % in a name stands for something in the names of logs.
+    // A % in a name would be a placeholder in the names of logs.
     std::string folder = jobs_folder(r.folder).string();
     for (std::size_t at = 0; (at = folder.find('%', at)) != std::string::npos; at += 2)
         folder.insert(at, "%");

@@ -6,7 +6,7 @@
 
 namespace uw {
 
-/// What rendering a data set takes, measured on its first moments: those are all cameras of one
+/// The cost of rendering a data set, measured on its first moments; a moment is all cameras of one
 /// frame of one draw.
 struct MeasuredWork {
     double first_seconds = 0;        // from the start of the program to the first moment's end
@@ -29,7 +29,7 @@ struct SlurmRequest {
     MeasuredWork measured;
 };
 
-/// What is asked for: `k_time_margin` and `k_memory_margin` times what was measured, rounded up.
+/// The resources requested: `k_time_margin` and `k_memory_margin` times those measured, rounded up.
 inline constexpr double k_time_margin = 3;
 inline constexpr double k_memory_margin = 1.5;
 int task_minutes(const SlurmRequest& request);
@@ -42,8 +42,7 @@ std::string task_script(const SlurmRequest& request);
 std::string merge_script(const SlurmRequest& request);
 std::string submit_script(const SlurmRequest& request);
 
-/// The folder of these scripts and the jobs' messages: beside the set, of whose files they are
-/// none.
+/// The folder of these scripts and the jobs' messages: beside the set, not part of it.
 std::filesystem::path jobs_folder(const std::filesystem::path& set);
 
 /// Writes the three scripts. Throws IoError.

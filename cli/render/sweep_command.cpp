@@ -57,14 +57,14 @@ std::optional<ValueAxis> sweep_axis(const std::string& override) {
         throw UsageError(fmt::format("--set {}: {}", printable(override, 200), what));
     };
     if (step == 0) fail("the step is 0; give FIRST:LAST:STEP, such as -1.2:-0.2:0.2");
-    // The ends belong to it, though their distance be a multiple of the step up to rounding only.
+    // Both ends are included even if their distance is a multiple of the step only up to rounding.
     const double count = std::floor(std::abs((last - first) / step) + 1e-9) + 1;
     if (count > k_max_axis_values) fail("more than 1000 values; give a larger step");
     if (count < 2) fail("the step is larger than the range; give a smaller one");
     ValueAxis axis{override.substr(0, equals), {}};
     const double signed_step = std::copysign(step, last - first);
     for (int i = 0; i < static_cast<int>(count); ++i) {
-        // As decimal numbers are meant: 0.3, not 0.30000000000000004.
+        // Rounded to the decimal number that is meant: 0.3, not 0.30000000000000004.
         double value = 0;
         parse_number(fmt::format("{:.12g}", first + i * signed_step), value);
         axis.values.push_back(value);
@@ -185,7 +185,7 @@ class SweepRun : public RunClient {
             progress_(1);
             sweep_.is_complete = true;
         } catch (const Interrupted&) {
-            // What has been measured is the result.
+            // The result is what has been measured so far.
         }
         return std::move(sweep_);
     }
@@ -243,7 +243,7 @@ Sweep run_pictures(const SweepArguments& a, const ProgressCallback& progress) {
 
 namespace {
 
-/// Something measured at a point, by which a curve is drawn.
+/// A quantity measured at a point, by which a curve is drawn.
 struct Quantity {
     std::string label;
     std::function<double(const SweepPoint&)> value;  // NaN: there is none

@@ -17,8 +17,8 @@
 namespace uw {
 
 /// The axis that an override describes; none if its value is not such a range. Both ends are
-/// included, up to rounding; the step's sign does not matter. Throws UsageError for a range that
-/// makes no sense, or of more than 1000 values.
+/// included, up to rounding; the step's sign does not matter. Throws UsageError for an invalid
+/// range, or one of more than 1000 values.
 std::optional<ValueAxis> sweep_axis(const std::string& override);
 
 /// `uwvdb sweep` as typed.
