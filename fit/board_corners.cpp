@@ -26,7 +26,7 @@ board_module::GreyPicture grey(const PixelImage& image) {
         for (std::size_t k = 0; k < colours; ++k) sum += double{image.pixels[i + k]};
         means.push_back(sum / static_cast<double>(colours));
     }
-    // Dark pictures are as good as bright ones: all of the range there is.
+    // Stretches the grey values to the full range, so that dark pictures work as well.
     const double brightest = means.empty() ? 0 : *std::ranges::max_element(means);
     for (const double mean : means)
         picture.values.push_back(static_cast<unsigned char>(

@@ -30,8 +30,9 @@ PointTable find_board_corners(const std::vector<std::filesystem::path>& pictures
 /// A table of points as read_seen_points reads it.
 std::string point_csv(const PointTable& table);
 
-/// What the module exports: a picture's grey values, 0 to 255, row by row, and the corners found in
-/// it, row by row of the board, the image's corner at (0, 0) [pixels]; none if it is not there.
+/// The function that the module exports: takes a picture's grey values, 0 to 255, row by row, and
+/// returns the corners found in it, row by row of the board, the image's corner at (0, 0) [pixels];
+/// none if the board is not found.
 namespace board_module {
 inline constexpr const char* k_find = "uwvdb_find_board";
 struct GreyPicture {

@@ -12,7 +12,7 @@ namespace uw {
 
 /// Robust non-linear least squares, by Ceres in a module that is loaded when it is needed.
 
-/// What is to be made small: residuals in groups, such as the two coordinates of a corner. All
+/// The function to be minimised: residuals in groups, such as the two coordinates of a corner. All
 /// depend on the shared unknowns; a group may depend on a block of six unknowns besides, the motion
 /// of its board, which it has in common with the other groups of that block.
 class ResidualFunction {
@@ -27,8 +27,8 @@ class ResidualFunction {
     ResidualFunction(ResidualFunction&&) = delete;
     ResidualFunction& operator=(ResidualFunction&&) = delete;
 
-    /// To be called before groups are evaluated for these shared unknowns. False if no scene is
-    /// like that.
+    /// To be called before groups are evaluated for these shared unknowns. False if they do not
+    /// describe a valid scene.
     virtual bool prepare(std::span<const double> shared, bool with_derivatives) = 0;
 
     /// The residuals of a group, in units of their standard deviation, and, unless they are null,
@@ -50,14 +50,14 @@ struct LeastSquaresProblem {
         double value = 0;  // where to begin; then what was found
         double lower = -std::numeric_limits<double>::infinity();
         double upper = std::numeric_limits<double>::infinity();
-        /// What is known of it beforehand; a deviation of infinity: nothing.
+        /// Its prior; none if the deviation is infinite.
         double prior_mean = 0, prior_deviation = std::numeric_limits<double>::infinity();
     };
     std::vector<Unknown> shared;
     std::vector<ResidualFunction::Block> blocks;
     std::vector<ResidualGroup> groups;
-    /// Where Cauchy's loss begins to count a group for less, in standard deviations; infinite: the
-    /// squares are summed as they are.
+    /// The scale of Cauchy's loss, beyond which groups lose weight [standard deviations]; infinite:
+    /// plain squares.
     double loss_scale = std::numeric_limits<double>::infinity();
     int max_iterations = 100;
     double tolerance = 1e-10;  // of the sum's relative change: then it has converged
@@ -66,7 +66,7 @@ struct LeastSquaresProblem {
     std::function<void(int iteration, double cost)> progress{};  // may throw
 };
 
-/// What became of a problem, whose unknowns are as they were found.
+/// The outcome of a problem, whose unknowns then have the values found.
 struct LeastSquaresOutcome {
     bool converged = false;
     int iterations = 0;
@@ -87,15 +87,15 @@ struct EigenSystem {
 /// `matrix`: n x n numbers. Throws UsageError as above.
 EigenSystem symmetric_eigen_system(std::span<const double> matrix);
 
-/// Where a pinhole camera may be from points whose images are known.
+/// Points whose images in a pinhole camera are known.
 struct SeenPoints {
     std::vector<std::array<double, 3>> points;  // x, y, z in the body's own axes
     std::vector<std::array<double, 2>> images;  // x/z, y/z of the directions to them
 };
 /// camera_from_body as a rotation matrix, row by row, and the translation behind it.
 using RigidMatrix = std::array<double, 12>;
-/// The poses from which points are seen so, the best first; none if they do not tell. Throws
-/// UsageError as above.
+/// The camera poses that explain the images of points, the best first; none if they do not
+/// determine it. Throws UsageError as above.
 std::vector<RigidMatrix> poses_from_points(const SeenPoints& seen);
 
 /// A function that the module exports under this name. Throws UsageError if it is not there.
@@ -105,7 +105,7 @@ Function& function_of_fitting(const char* symbol) {
     return *reinterpret_cast<Function*>(address_in_fitting(symbol));
 }
 
-/// What the module exports: each puts what it is left with into `fault`.
+/// The functions that the module exports: each stores the message of an error in `fault`.
 namespace min_squares_module {
 inline constexpr const char* k_name = "uwvdb_fitting";
 inline constexpr const char* k_solve = "uwvdb_solve_least_squares";

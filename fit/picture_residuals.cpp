@@ -29,31 +29,32 @@ bool has_all_light(const SceneDesc& scene) {
     return scattering_of(scene.render) == RenderDesc::Scattering::multiple;
 }
 
-/// What a prediction may be off by for reasons of its own: shadows and tables are exact to about
-/// 1e-3 at a scene's usual quality, and light that is scattered more than once, which is found by
-/// random paths, to 1e-2.
+/// The relative error of a prediction itself: shadows and tables are accurate to about 1e-3 at a
+/// scene's usual quality, and multiply scattered light, which is estimated by random paths, to
+/// 1e-2.
 double model_error(const SceneDesc& scene) {
     return has_all_light(scene) ? 1e-2 : 1e-3;
 }
 
-/// By how much unknowns are moved for derivatives, to either side. Light is interpolated, so that
-/// smaller steps would measure the tables; of larger ones central differences are off by the
-/// square. Of all light smaller steps would measure that the random paths are not quite the same
-/// ones on both sides: noise in derivatives is taken for what they tell of unknowns that others
-/// make up for, absorption and scattering, which then move too little.
+/// The steps of unknowns for central differences, to either side. Light is interpolated, so that
+/// smaller steps would measure the tables; the error of larger ones grows with the square. With all
+/// light, smaller steps would measure that the random paths differ on both sides: such noise looks
+/// like information about unknowns that compensate each other, absorption and scattering, which
+/// then move too little.
 double step_of(const SceneUnknown& unknown, bool has_all_light) {
     if (!has_all_light) return 1e-2 * unknown.scale;
     return 0.3 * std::max(std::abs(unknown.start), 0.25 * unknown.scale);
 }
 
-/// The least pixels that are rendered of a picture. Water's light is that at a pixel's middle; with
-/// fewer, how it bends within a pixel is more than 1e-3 of it. Of all light each pixel has a node,
-/// and what lies between nodes is smoothed away (docs/multiple.md).
+/// The least number of pixels that are rendered for a picture. The water's light is evaluated at
+/// the centre of a pixel; with fewer pixels its curvature within one is an error of more than 1e-3.
+/// With all light each pixel has a node, and variation between nodes is smoothed
+/// (docs/multiple.md).
 constexpr double k_min_pixels = 2300;
 
-/// The side of cells, of which about so many lie across a picture [pixels]. It is whole, so that a
-/// cell is what the pixels of a coarser image cover. Of a mosaic it is odd: then the pixels of each
-/// colour have their middle in that of the cell, wherever the pattern begins in it.
+/// The side of cells, about this many of which lie across a picture [pixels]. It is a whole number,
+/// so that cells coincide with pixels of a coarser image. For a mosaic it is odd: then the pixels
+/// of each colour are centred in the cell, wherever the pattern begins.
 int side_of_cells(const CameraDesc& camera, int cells) {
     const double side = static_cast<double>(camera.width) / cells;
     if (camera.sensor && is_bayer(camera.sensor->mosaic))
@@ -62,7 +63,7 @@ int side_of_cells(const CameraDesc& camera, int cells) {
                       std::min(camera.width, camera.height));
 }
 
-/// The fewest pixels across which scatter is measured: that of fewer is known too badly.
+/// The least number of pixels over which scatter is measured: over fewer it is too inaccurate.
 constexpr int k_min_scatter_side = 5;
 
 void refuse_developed(const SensorDesc& sensor) {
@@ -74,8 +75,8 @@ void refuse_developed(const SensorDesc& sensor) {
         sensor.where));
 }
 
-/// The number that a raw picture's values of 1 stand for: its bits are the uppermost of a byte or
-/// of two [DN].
+/// The number that a value of 1 in a raw picture represents: its bits are the uppermost of a byte
+/// or of two [DN].
 double number_of_one(const SensorDesc& sensor) {
     const int bits = sensor.bit_depth <= 8 ? 8 : 16;
     return static_cast<double>((1 << bits) - 1) / (1 << (bits - sensor.bit_depth));
@@ -99,7 +100,7 @@ class Values {
         if (sensor_) return value * number_of_one(*sensor_);
         return image_.is_linear ? value : linear_from_srgb(value);
     }
-    /// From where on a pixel may be white, whatever it sees.
+    /// The value from which on a pixel may be saturated.
     double white() const {
         constexpr double k_nearly = 0.995;
         if (sensor_) {
@@ -111,7 +112,7 @@ class Values {
         return image_.is_linear ? std::numeric_limits<double>::infinity() : k_nearly;
     }
 
-    /// Whether all of a pixel shows something: nothing of it is masked by the alpha of its file.
+    /// Whether a pixel is completely valid: no part of it is masked by the alpha of its file.
     bool is_whole(int x, int y) const {
         if (image_.channels != 2 && image_.channels != 4) return true;
         const auto index = static_cast<std::size_t>(y) * static_cast<std::size_t>(image_.width) +
@@ -136,7 +137,7 @@ double variance_of(double number, const SensorDesc& sensor) {
     return shot + dark * dark + std::pow(sensor.prnu * signal, 2) + k_rounding;
 }
 
-/// How the values of a colour are spread over a window of a picture.
+/// The statistics of a colour's values over a window of a picture.
 struct Spread {
     double count = 0, sum = 0, squares = 0, least = 1e300, most = -1e300;
 
@@ -301,7 +302,8 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
                 cell.scatter[k] = Spread(values, around, k).variance() / spread.count;
                 continue;
             }
-            // Of few pixels the scatter is known badly: what scatters as noise does, is noise.
+            // The scatter of few pixels is inaccurate: if it is compatible with noise, it is taken
+            // as noise.
             constexpr double k_like_noise = 4;
             const double variance = spread.variance();
             if (variance < k_like_noise * variance_of(cell.mean[k], *sensor_))
@@ -329,8 +331,7 @@ void PictureResiduals::weigh(Weights by) {
             const double variance = cell.noisy_pixels[k] > 0
                                         ? variance_of(value, *sensor_) / cell.noisy_pixels[k]
                                         : cell.scatter[k];
-            // Where all is dark, nothing is known to better than what the bright parts are known
-            // to.
+            // In dark parts the absolute error is at least that of the bright parts.
             cell.error[k] = std::hypot(std::sqrt(variance), model_error_ * value,
                                        0.1 * model_error_ * brightest_[cell.picture]);
         }
@@ -344,7 +345,7 @@ void PictureResiduals::show_cells(SceneDesc& scene, int side) const {
     camera.width = cell_side_ * width_;
     camera.height = cell_side_ * height_;
     resize_image(camera, side * width_, side * height_);
-    // Of a power of two the samples of a pixel have their middle in the pixel's (PixelSampling).
+    // With a power of two the samples of a pixel are centred in it (PixelSampling).
     constexpr unsigned k_fewest = 4;
     if (!integrator_kind(scene.render.integrator).traces_paths)
         scene.render.samples = static_cast<int>(
@@ -433,7 +434,7 @@ std::vector<double> PictureResiduals::exposures_at(std::span<const double> share
 void PictureResiduals::group_unknowns(std::span<const double> shared) {
     moved_.resize(shared.size());
     std::vector<std::array<bool, 3>> taken;  // per group
-    // Where light is scattered once, it has no noise.
+    // Single scattering has no noise.
     const Prediction before = predict(shared, Light::scattered_once);
     for (std::size_t i = 0; i < shared.size(); ++i) {
         std::vector<double> values(shared.begin(), shared.end());
@@ -448,8 +449,8 @@ void PictureResiduals::group_unknowns(std::span<const double> shared) {
             for (std::size_t k = 0; k < colours_; ++k)
                 changes[k] +=
                     std::pow((after[cell][k] - before[cell][k]) / cells_[cell].error[k], 2);
-        // Where quadrature refines for one band, others change by its tolerance. If nothing changes
-        // at all, what is scattered again may.
+        // If quadrature refines for one band, others change by its tolerance. If nothing changes at
+        // all, multiply scattered light may.
         constexpr double k_independent = 1e-2;
         const double most = *std::ranges::max_element(changes);
         for (std::size_t k = 0; k < colours.size(); ++k)
@@ -559,7 +560,7 @@ double PictureResiduals::clustering(std::span<const double> residuals,
                                     const std::vector<bool>& outliers) const {
     constexpr int k_blocks_across = 5;
     const int side = std::max(1, width_ / k_blocks_across);
-    // By picture, block and colour; of independent residuals the square of a sum is, in the mean,
+    // Sums by picture, block and colour: for independent residuals the expected square of a sum is
     // the sum of the squares.
     std::map<std::array<std::size_t, 4>, double> sums;
     double squares = 0;

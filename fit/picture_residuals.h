@@ -24,24 +24,24 @@ namespace uw {
 struct ObservedPicture {
     std::filesystem::path file;
     ImageChoice choice;
-    /// In the place of the scene's, before the `transform` of its camera's trajectory, if it has
+    /// Replaces the scene's, before the `transform` of its camera's trajectory, if it has
     /// one.
     std::optional<Pose> world_from_camera{};
 };
 
-/// The pictures that a name stands for: a file, or, with a pattern for the frame's number
+/// The pictures that a name denotes: a file, or, with a pattern for the frame's number
 /// ("dive/%04d.png"), those of all frames. Throws IoError if there are none.
 std::vector<ObservedPicture> pictures_called(const std::filesystem::path& name);
 
-/// How far the light that a scene predicts is from that of pictures. Each picture is divided into
-/// cells, squares of whole pixels; a group is the mean over a cell in each of its colours, and the
-/// residual is in units of what the mean may be off by: from the scatter of the cell's pixels,
-/// which is great where something has an edge (or, if it is no more than that, the noise that the
-/// scene's sensor has), and a thousandth of the light.
+/// The difference between the light that a scene predicts and that of pictures. Each picture is
+/// divided into cells, squares of whole pixels; a group is the mean over a cell in each of its
+/// colours, and the residual is in units of the standard error of that mean: from the scatter of
+/// the cell's pixels, which is great at edges (or, if it is no more than that, from the noise of
+/// the scene's sensor), and a thousandth of the light.
 ///
-/// What is predicted of a cell is the light over just its pixels: a cell is a pixel, or some, of an
-/// image of coarser ones. Of a mosaic its side is odd, so that the pixels of every colour have
-/// their middle in the cell's.
+/// The prediction for a cell is the light over exactly its pixels: a cell is a pixel, or several,
+/// of a coarser image. For a mosaic its side is odd, so that the pixels of every colour are centred
+/// in the cell.
 ///
 /// Scenes with a sensor predict its numbers as they are stored raw, from which the sensor's black
 /// level, gain, mosaic and efficiencies follow; other scenes red, green and blue, of pictures with
@@ -69,20 +69,20 @@ class PictureResiduals final : public Observations {
     double of_group(double rms) const override { return rms; }
     bool is_rough() const override { return has_all_light_; }
     void weigh(Weights by) override;
-    /// Of the means over blocks of cells, five across a picture: what cells share, such as the
-    /// errors of light that is interpolated between nodes.
+    /// Computed from the means over blocks of cells, five across a picture: it covers the errors
+    /// that cells have in common, such as those of light that is interpolated between nodes.
     double clustering(std::span<const double> residuals,
                       const std::vector<bool>& outliers) const override;
 
-    /// By what the light of the scene with these unknowns, exposures of 1, is to be multiplied for
-    /// each picture to be as bright as it is.
+    /// The exposures by which the light of the scene with these unknowns has to be multiplied to be
+    /// as bright as each picture.
     std::vector<double> exposures_at(std::span<const double> shared);
 
     /// The RMS of prediction less observation over the mean of what was observed, for the cells
     /// that `result` keeps.
     double relative_rms(const FitResult& result) const;
 
-    /// A picture as it was seen and as the scene that was prepared last predicts it, in its cells.
+    /// A picture as observed, and as predicted by the scene that was prepared last, by cells.
     struct Comparison {
         int width = 0, height = 0;
         std::vector<std::array<double, 3>> seen, predicted;  // NaN: left out
@@ -97,8 +97,8 @@ class PictureResiduals final : public Observations {
         std::size_t picture = 0;
         int x = 0, y = 0;  // in the divided picture
         Colours mean{}, error{};
-        /// How many pixels scatter by no more than the sensor's noise; or 0, and the variance of
-        /// the mean as the pixels scatter.
+        /// The number of pixels if their scatter is no more than the sensor's noise; else 0, and
+        /// the variance of the mean by their scatter.
         Colours noisy_pixels{}, scatter{};
     };
     using Prediction = std::vector<Colours>;  // of each cell
@@ -114,9 +114,9 @@ class PictureResiduals final : public Observations {
     Prediction predict(std::span<const double> values, Light light);
     void group_unknowns(std::span<const double> shared);
     void take_derivatives(std::span<const double> shared);
-    /// Whether scenes are within so many steps of each other.
+    /// Whether scenes are within this many steps of each other.
     bool is_near(std::span<const double> shared, std::span<const double> other, double steps) const;
-    /// What a cell shows of light that the scene predicts, and its derivatives.
+    /// The value of a cell for the light that the scene predicts, and its derivatives.
     struct Seen {
         double value = 0, by_light = 0, by_exposure = 0, by_power = 0;
     };
@@ -139,12 +139,12 @@ class PictureResiduals final : public Observations {
     std::vector<double> steps_;            // per unknown, of derivatives
     std::vector<std::size_t> exposures_;   // the unknowns that are those of pictures; or none
     std::optional<std::size_t> response_;  // the unknown that is it
-    double dark_ = 0;                      // what is seen without light
+    double dark_ = 0;                      // the signal without light
     std::vector<double> shared_;           // the unknowns as they were prepared last
     Prediction light_;                     // of the scene
     std::vector<double> light_of_;         // for which unknowns; empty: none
-    /// Where derivatives were taken; empty: nowhere. They are differences over a step to either
-    /// side, and serve within it.
+    /// The unknowns at which derivatives were taken; empty: not yet. They are differences over a
+    /// step to either side, and serve within it.
     std::vector<double> derivatives_at_;
     /// Unknowns that are moved together, as no colour depends on two of them: those of bands.
     struct Together {

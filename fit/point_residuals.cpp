@@ -122,8 +122,8 @@ PointResiduals::Cameras PointResiduals::cameras_of(std::span<const double> value
 }
 
 Pose PointResiduals::start_pose(std::size_t image) const {
-    // As a pinhole that sees in the directions of the rays in the water, whose feet are apart by
-    // less than the distance of what is seen.
+    // Approximates the camera by a pinhole with the directions of the rays in the water, whose
+    // origins are closer together than the distance of the points.
     SeenPoints pinhole;
     for (const PhotographedPoint& point : seen_.points) {
         if (point.image != image) continue;
@@ -254,7 +254,7 @@ std::vector<FoundPose> PointResiduals::found_poses(const FitResult& result) cons
     constexpr double k_step = 1e-6;  // [m] and [rad]
     std::vector<FoundPose> found;
     for (const Affine& pose : poses(result.blocks)) found.push_back({pose});
-    // By the blocks, of all images at once: each moves its own.
+    // Derivatives by the blocks, for all images at once, as each block moves only its own image.
     std::vector<std::array<Vector3, k_block_size>> positions(found.size()), turns(found.size());
     for (std::size_t k = 0; k < k_block_size; ++k) {
         std::vector<Block> back = result.blocks, ahead = back;
@@ -279,7 +279,7 @@ std::vector<FoundPose> PointResiduals::found_poses(const FitResult& result) cons
                     position += positions[i][j][axis] * covariance * positions[i][k][axis];
                     turn += turns[i][j][axis] * covariance * turns[i][k][axis];
                 }
-            // Of what is not determined infinities cancel to no number.
+            // For undetermined poses infinities would cancel to NaN.
             const auto error = [](double variance) {
                 return variance >= 0 ? std::sqrt(variance)
                                      : std::numeric_limits<double>::infinity();
@@ -308,7 +308,7 @@ std::vector<std::string> PointResiduals::questions(const FitResult& result,
             "The points of an image are at most {:.3g} m apart: is that what was meant? Give "
             "metres, as x, y and z or as the side of a square.",
             extent));
-    // What is seen a few pixels off is as good as a board and a lens are.
+    // Errors of a few pixels are usual for boards and lenses.
     constexpr double k_good = 2;
     const auto outliers = static_cast<double>(std::ranges::count(result.outliers, true));
     constexpr double k_many = 0.3;

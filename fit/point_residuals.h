@@ -19,7 +19,7 @@ namespace uw {
 
 /// Points of boards and other rigid things, and where photographs show them.
 
-/// What the camera was in when it saw a point: the scene's water; air, beyond the same port; or the
+/// The medium in which the camera imaged a point: the scene's water; air, behind the same port; or
 /// air without a port.
 enum class SeenThrough : std::uint8_t { water, air, bare };
 
@@ -35,7 +35,7 @@ struct PointTable {
     std::vector<PhotographedPoint> points;
 };
 
-/// Where a camera was found in the axes of an image's points, with standard errors.
+/// The pose of a camera in the axes of an image's points, with standard errors.
 struct FoundPose {
     Affine world_from_camera;
     Vector3 position_error{};  // along these axes [m]
@@ -47,8 +47,9 @@ struct FoundPose {
 /// than four.
 PointTable read_seen_points(const CsvTable& table);
 
-/// How far from where they were seen a scene's camera sees points, a group of two residuals for
-/// each [pixels over the deviation]. Each image's things have a pose of their own, a block.
+/// Reprojection errors: a scene's camera images points at a distance from where they were observed,
+/// a group of two residuals for each [pixels over the deviation]. The objects of each image have
+/// their own pose, a block.
 class PointResiduals final : public Observations {
   public:
     /// `unknowns` outlive it. Throws InputError for an image whose points the camera cannot see
@@ -62,15 +63,15 @@ class PointResiduals final : public Observations {
     std::vector<ResidualGroup> groups() const override;
     std::size_t block_count() const override { return poses_.size(); }
 
-    /// Where the camera is in the axes of each image's points, world_from_camera, with these
+    /// The poses of the camera in the axes of each image's points, world_from_camera, with these
     /// blocks.
     std::vector<Affine> poses(std::span<const Block> blocks) const;
 
     /// The same with their standard errors.
     std::vector<FoundPose> found_poses(const FitResult& result) const;
 
-    /// What the author of the table may have meant by it, where it looks odd: questions, each a
-    /// sentence with the hint. `options`: of the fit that came to `result`.
+    /// Doubts about a table that looks odd: questions on what may have been meant, each a sentence
+    /// with a hint. `options`: of the fit that came to `result`.
     std::vector<std::string> questions(const FitResult& result, const FitOptions& options) const;
 
     const std::vector<std::string>& images() const override { return seen_.images; }

@@ -16,9 +16,9 @@ namespace uw {
 namespace {
 
 constexpr double k_infinity = std::numeric_limits<double>::infinity();
-/// Beyond so many standard deviations an observation is of something else.
+/// Beyond this many standard deviations an observation is an outlier.
 constexpr double k_outlier = 5;
-/// Where Cauchy's loss has 95 % of the efficiency of squares for normal residuals.
+/// The scale at which Cauchy's loss has 95 % of the efficiency of squares for normal residuals.
 constexpr double k_cauchy = 2.385;
 
 /// Relative changes of the sum at which it has converged; where it is rough, the first at all
@@ -45,10 +45,10 @@ std::vector<double> residuals_of(Observations& observations, const LeastSquaresP
     return all;
 }
 
-/// The same, with weights from what the unknowns predict.
+/// The same, with weights from the predictions of the unknowns.
 std::vector<double> weighed_residuals(Observations& observations,
                                       const LeastSquaresProblem& problem) {
-    residuals_of(observations, problem);  // makes it what was predicted last
+    residuals_of(observations, problem);  // makes this the last prediction
     observations.weigh(Observations::Weights::by_prediction);
     return residuals_of(observations, problem);
 }
@@ -104,7 +104,8 @@ class Rounds {
     LeastSquaresOutcome solve() {
         observations_.set_deviation(1);
         observations_.weigh(Observations::Weights::by_observation);
-        // From far away, squares lead there; what is far off afterwards are outliers.
+        // Squares converge from far away; the observations that are far off afterwards are
+        // outliers.
         LeastSquaresOutcome outcome = round("squares", k_infinity, k_on_the_way);
         double deviation = deviation_now();
         if (options_.keeps_outliers) {
@@ -151,7 +152,7 @@ class Rounds {
 void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
     const std::size_t n = result.values.size();
     if (n == 0) return;
-    // In sizes of the unknowns, so that its eigenvalues compare.
+    // In sizes of the unknowns, so that its eigenvalues are comparable.
     std::vector<double> information = outcome.information;
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j) {
@@ -166,8 +167,8 @@ void find_errors(const LeastSquaresOutcome& outcome, FitResult& result) {
     std::vector<bool> is_free(n, false);
     for (std::size_t k = 0; k < n; ++k) {
         const std::span vector = std::span(system.vectors).subspan(k * n, n);
-        // Below rounding nothing is known; and what is known to no better than the unknowns' own
-        // size, as good as nothing.
+        // Directions below rounding are undetermined; those with errors above the unknowns' own
+        // sizes practically so.
         const bool is_nothing = !(system.values[k] > 1e-13 * greatest);
         const double error = is_nothing ? k_infinity : 1 / std::sqrt(system.values[k]);
         if (error > 1) {
@@ -210,9 +211,9 @@ std::string list_of(const SceneUnknown& unknown) {
                                        : unknown.name;
 }
 
-/// What an error of each is to be held against: how great what was found is, wherever the fit
-/// began. A tilt matters by its degrees, and of what is found next to 0, such as how far a port is
-/// off its middle, a centimetre does, or what mattered at the start if that is less.
+/// The size with which an error of each unknown is compared: the magnitude of the value found,
+/// wherever the fit began. For a tilt it is in degrees; for a value near 0, such as the offset of a
+/// port, it is a centimetre, or the initial scale if that is less.
 void find_sizes(std::vector<FoundValue>& values) {
     constexpr double k_little = 0.01;  // as in SceneUnknowns: a centimetre, 1 % per metre
     for (FoundValue& found : values) {
@@ -227,7 +228,7 @@ void find_sizes(std::vector<FoundValue>& values) {
 
 constexpr std::size_t k_block = ResidualFunction::k_block_size;
 
-/// The inverse of a symmetric positive matrix; infinite if it is none.
+/// The inverse of a symmetric positive definite matrix; infinite if it is not.
 BlockCovariance inverse_of(BlockCovariance matrix) {
     BlockCovariance inverse{};
     for (std::size_t i = 0; i < k_block; ++i) inverse[i * k_block + i] = 1;
@@ -253,8 +254,8 @@ BlockCovariance inverse_of(BlockCovariance matrix) {
     return inverse;
 }
 
-/// The covariances of the blocks: what their own observations tell for given unknowns, and the
-/// errors of these, which move the blocks with them.
+/// The covariances of the blocks: from their own observations for given unknowns, and from the
+/// errors of the unknowns, which move the blocks.
 void find_block_covariances(Observations& observations, const LeastSquaresProblem& problem,
                             double variance, FitResult& result) {
     const std::size_t n = result.values.size(), blocks = problem.blocks.size();
@@ -288,8 +289,8 @@ void find_block_covariances(Observations& observations, const LeastSquaresProble
     for (std::size_t block = 0; block < blocks; ++block) {
         const BlockCovariance inverse = inverse_of(own[block]);
         if (!std::isfinite(inverse[0])) continue;
-        // By how much the block moves with each unknown's error; what is not determined moves it
-        // anywhere.
+        // The displacement of the block by each unknown's error; infinite for undetermined
+        // unknowns.
         std::vector<double> moved(k_block * n, 0.0);
         bool is_determined = true;
         for (std::size_t row = 0; row < k_block; ++row)
@@ -338,8 +339,8 @@ LeastSquaresProblem problem_of(const Observations& observations, const SceneUnkn
     return problem;
 }
 
-/// Somewhere around where the fit begins: within its bounds, where both are given, else within a
-/// third of its scale, and of its prior.
+/// Draws a starting point: within the bounds if both are given, else within a third of the scale,
+/// and within the prior.
 void begin_elsewhere(LeastSquaresProblem& problem, const SceneUnknowns& unknowns,
                      std::uint64_t seed, int start) {
     for (std::size_t i = 0; i < problem.shared.size(); ++i) {
@@ -374,7 +375,7 @@ FitResult robust_fit(Observations& observations, const SceneUnknowns& unknowns,
         try {
             found = rounds.solve();
         } catch (const InputError&) {
-            if (start == 0) throw;  // of the others, some lead nowhere
+            if (start == 0) throw;  // some of the other starts may fail
             continue;
         }
         result.iterations += rounds.iterations();

@@ -14,11 +14,11 @@
 
 namespace uw {
 
-/// What was observed, held against what a scene predicts: residuals in units of a standard
-/// deviation, which is not known beforehand.
+/// Observations compared with the predictions of a scene: residuals in units of a standard
+/// deviation that is not known beforehand.
 class Observations : public ResidualFunction {
   public:
-    /// Where in which image something was observed.
+    /// The image and the position at which something was observed.
     struct Place {
         std::size_t image = 0;
         ImagePoint at;  // the image's corner is (0, 0) [pixels]
@@ -35,17 +35,18 @@ class Observations : public ResidualFunction {
     virtual const char* unit() const = 0;
     virtual double of_group(double rms) const = 0;
 
-    /// What the weights of observations follow: noise that grows with what is seen, as that of
-    /// light does, makes those that chance to be low seem the better known, and what is found too
-    /// low; what is predicted knows nothing of chance.
+    /// The values from which weights are computed. If noise grows with the signal, as that of light
+    /// does, weights by observation favour observations that are low by chance, which biases the
+    /// result downwards; weights by prediction do not.
     enum class Weights { by_observation, by_prediction };
-    /// Takes weights from what was observed, or from what was predicted last.
+    /// Computes weights from the observations, or from the last predictions.
     virtual void weigh(Weights /*by*/) {}
 
     /// Whether predictions have noise of their own, which changes with the unknowns.
     virtual bool is_rough() const { return false; }
-    /// By how much neighbouring residuals that hang together enlarge the variance of what is found,
-    /// at least 1: independent ones do not. `residuals` of all groups, `outliers` per group.
+    /// The factor, at least 1, by which correlations of neighbouring residuals increase the
+    /// variance of the result; 1 for independent ones. `residuals` of all groups, `outliers` per
+    /// group.
     virtual double clustering(std::span<const double> /*residuals*/,
                               const std::vector<bool>& /*outliers*/) const {
         return 1;
@@ -59,7 +60,7 @@ class Observations : public ResidualFunction {
     double deviation_ = 1;
 };
 
-/// What is known of an unknown beforehand.
+/// Prior knowledge of an unknown.
 struct Prior {
     double mean = 0;
     double deviation = std::numeric_limits<double>::infinity();
@@ -83,7 +84,7 @@ struct FoundValue {
     double error = 0;            // standard error; infinite if it is not determined
     double prior_deviation = 0;  // infinite: none
     bool is_at_bound = false;
-    /// What errors of it are held against: the greatest of its list as it was found, > 0.
+    /// The size with which its errors are compared: the greatest value of its list as found, > 0.
     double size = 1;
 };
 
@@ -92,7 +93,7 @@ struct FoundValue {
 struct FreeDirection {
     std::vector<std::size_t> unknowns;  // most affected first
     std::vector<double> components;     // likewise, of unit length
-    /// The standard error along it, in sizes; infinite: nothing at all is known.
+    /// The standard error along it, in sizes; infinite if it is not determined at all.
     double error = 0;
 };
 
@@ -112,7 +113,7 @@ struct FitResult {
     std::vector<bool> outliers;             // per group
     double rms = 0, rms_with_outliers = 0;  // over residuals, in the observations' unit
     double deviation = 0;   // of a residual, estimated: with as many fewer as there are unknowns
-    double clustering = 1;  // Observations::clustering, which the errors hold
+    double clustering = 1;  // Observations::clustering, included in the errors
     double rms_at_start = 0;
     int iterations = 0;
     std::vector<double> costs;  // of each start, as found

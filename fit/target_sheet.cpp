@@ -28,7 +28,7 @@ constexpr int k_columns = 10, k_rows = 7;  // squares, if nothing is said
 
 const std::array<Paper, 3> k_papers{{{"a4", 297, 210}, {"a3", 420, 297}, {"letter", 279.4, 215.9}}};
 
-/// What is drawn on a page, as PDF's operators.
+/// The contents of a page, as PDF operators.
 class PageContent {
   public:
     explicit PageContent(const Paper& paper) : height_(paper.height) {}

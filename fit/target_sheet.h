@@ -24,7 +24,7 @@ BoardDesc board_for(const Paper& paper);
 
 /// The sheet as a PDF of one page, drawn as rectangles and Helvetica, which asks not to be scaled
 /// when it is printed. Squares are black and paper; patches have PDF's DeviceGray in fifths. Throws
-/// UsageError for a board that the paper has no room for.
+/// UsageError for a board that does not fit on the paper.
 std::string target_pdf(const BoardDesc& board, const Paper& paper);
 
 /// The same sheet as a surface, without its letters and ruler: OBJ and its materials, whose

@@ -25,7 +25,7 @@ std::optional<double> number_in(const ConfigNode& node) {
     return value;
 }
 
-/// What is unknown of pictures, beside what is of scenes.
+/// The unknowns of pictures, in addition to those of scenes.
 constexpr double k_min_exposure = 1e-3;  // of where it begins
 constexpr std::string_view k_exposure = "exposure", k_response = "response";
 
@@ -173,7 +173,7 @@ void SceneUnknowns::add_number(const ConfigNode& node, const std::string& path, 
 void SceneUnknowns::limit() {
     std::vector<double> values;
     for (const SceneUnknown& unknown : unknowns_) values.push_back(unknown.start);
-    scene(values);  // throws what is wrong with it as it is
+    scene(values);  // throws if the scene itself is invalid
     const auto is_refused = [&](std::size_t i, double value) {
         const double start = std::exchange(values[i], value);
         bool refused = false;

@@ -26,7 +26,7 @@ struct SceneUnknown {
     std::string unit;  // "deg" of tilts; else empty: the scene's own
     double start = 0;
     double scale = 1;  // a change that matters, > 0
-    /// What scenes may have.
+    /// The range that scenes permit.
     double lower = -std::numeric_limits<double>::infinity();
     double upper = std::numeric_limits<double>::infinity();
     Of of = Of::scene;
@@ -38,8 +38,8 @@ class SceneUnknowns {
   public:
     /// `keys` are paths as of --set, "water.absorption" or "camera.port.distance", where * stands
     /// for every entry: "lamps.*.position". A list of numbers is an unknown for each; a `normal` or
-    /// `direction` is two, by which it is tilted [deg]. Where numbers end of their own accord, such
-    /// as at 0, is found by trying them with the scene's reader. `file` is the scene's. Two keys
+    /// `direction` is two, by which it is tilted [deg]. The natural limits of numbers, such
+    /// as 0, are found by trying values with the scene's reader. `file` is the scene's. Two keys
     /// are no scene's: "exposure", one of each of the `pictures`, and "response"; both begin at 1.
     /// Throws UsageError for keys that the scene does not have or that hold no numbers, for these
     /// two without pictures, and as load_scene_tree.
@@ -49,7 +49,7 @@ class SceneUnknowns {
     const std::vector<SceneUnknown>& all() const { return unknowns_; }
     std::size_t size() const { return unknowns_.size(); }
 
-    /// Where an exposure is to begin, > 0.
+    /// Sets the initial value of an exposure, > 0.
     void begin_at(std::size_t unknown, double exposure);
 
     /// The scene with these values, one per unknown. Throws InputError if none may have them.

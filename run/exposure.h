@@ -6,7 +6,7 @@
 
 namespace uw {
 
-/// By what the previews of a run's images are multiplied.
+/// How the exposure of the previews of a run's images is chosen.
 struct PreviewExposure {
     enum class Kind {
         automatic,  // each by its own

@@ -51,7 +51,7 @@ const ImageScene& JobScenes::look_at(const JobImage& image) {
 }
 
 fs::file_time_type InputTimes::last_change(const JobImage& image) {
-    // The cameras of a moment have their files in common.
+    // The cameras of one moment use the same files.
     if (image_ && image_->scene == image.scene && image_->choice.frame == image.choice.frame)
         return last_;
     const SceneDesc& scene = scenes_.of(image.scene);

@@ -50,7 +50,7 @@ constexpr double k_patience = 60;  // s: for memory that other programs have
 
 }  // namespace
 
-// A long run outlasts moments in which there is none.
+// A long run waits for memory that is lacking for a moment.
 void RunEngine::render_all(const Job& job) {
     MemoryWait wait = MemoryWaitScope::of_this_thread();
     if (job.images.size() > 1) {
@@ -80,7 +80,7 @@ PixelWindow window_of(const WantedImage& wanted, const CameraDesc& camera) {
     return wanted.options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
 }
 
-// What is rendered for it: what the camera's image needs, too.
+// The layers to render, including those that the camera's image needs.
 RenderOptions rendered_for(const WantedImage& wanted, const CameraDesc& camera) {
     RenderOptions options = wanted.options;
     if (!wanted.camera_image) return options;
@@ -89,7 +89,7 @@ RenderOptions rendered_for(const WantedImage& wanted, const CameraDesc& camera) 
     return options;
 }
 
-// What the image leaves out, in one line; empty: little.
+// One line about the light that the image leaves out; empty if it is little.
 std::string light_note_of(Renderer& renderer) {
     const auto left_out = renderer.light_left_out();
     const AssembledScene& scene = renderer.assembled();
@@ -167,7 +167,7 @@ void RunEngine::finish_writing() {
 
 namespace {
 
-// What `warning` says about any frame: with the names of the sequences instead of their files.
+// `warning` without the frame: with the names of the sequences instead of their files.
 std::string without_frame(std::string warning, const SceneDesc& frame, const SceneDesc& all) {
     const auto replace = [&](const auto& of_frame, const auto& of_all) {
         const std::string file = of_frame.file.string();

@@ -20,7 +20,7 @@
 
 namespace uw {
 
-/// How far a run of several images has got, and how long it will take.
+/// The progress of a run of several images, and the time that it will still take.
 class SequenceClock {
   public:
     /// `noun`: what messages call one of them.
@@ -59,7 +59,7 @@ class SequenceClock {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// What is wanted of one image.
+/// The requirements on one image.
 struct WantedImage {
     RenderOptions options{};    ///< but for the frame's number, which follows from the job
     bool camera_image = false;  ///< with what the camera's sensor makes of it; it must have one
@@ -75,7 +75,7 @@ struct FinishedImage {
     std::shared_ptr<const Surfaces> surfaces;
 };
 
-/// What is left to do with an image once it is rendered; empty: nothing.
+/// The remaining work on an image once it is rendered; empty: none.
 struct ImageWork {
     /// In the background, while the next image is rendered.
     std::function<void()> write{};
@@ -83,7 +83,7 @@ struct ImageWork {
     std::function<void()> written{};
 };
 
-/// What a command makes of the images of a job. The hooks are called on the thread that runs the
+/// The command whose images a job renders. The hooks are called on the thread that runs the
 /// job, in the order below for each image, by its place in the job; what they throw ends the run.
 class RunClient {
   public:
@@ -94,11 +94,11 @@ class RunClient {
     RunClient(RunClient&&) = delete;
     RunClient& operator=(RunClient&&) = delete;
 
-    /// What is wanted of an image in its scene, which may be changed: to a draft, for instance.
+    /// Returns the requirements on an image, and may change its scene: to a draft, for instance.
     virtual WantedImage want(std::size_t place, ImageScene& scene) = 0;
     /// The image's scene has been loaded; nothing is rendered yet.
     virtual void loaded(std::size_t /*place*/) {}
-    /// The image is there. The renderer still holds what it was made of.
+    /// The image has been rendered. The renderer still has the data from which it was made.
     virtual ImageWork take(std::size_t place, FinishedImage image) = 0;
 
     /// A warning that has not been given in this run; see RunEngine::warn.
@@ -129,16 +129,16 @@ class RunEngine {
     /// Interrupted.
     void run(const Job& job, RunClient& client, const std::string& noun = "image");
 
-    /// Lends the renderer, between runs, to what is no run of images; `client` is told how far its
-    /// stages are. Throws what `work` throws.
+    /// Lends the renderer, between runs, to other work; `client` receives the progress of its
+    /// stages. Throws what `work` throws.
     void lend(RunClient& client, const std::function<void(Renderer& renderer)>& work) {
         client_ = &client;
         work(renderer_);
     }
 
-    /// For the hooks: what the image is rendered by.
+    /// For the hooks: the renderer of the image.
     Renderer& renderer() { return renderer_; }
-    /// For the hooks: how far the run is. An image counts once its writing has begun.
+    /// For the hooks: the progress of the run. An image counts once its writing has begun.
     const SequenceClock& clock() const { return *clock_; }
     /// How many images of the job have been written.
     std::size_t written() const { return written_; }

@@ -138,7 +138,7 @@ SceneDesc plume(const std::filesystem::path& file) {
     return desc;
 }
 
-// All light includes what forward scatter stands for.
+// All light includes the light that forward scatter approximates.
 SceneDesc in_all_light(SceneDesc desc, int width, int height) {
     resize_image(desc.camera, width, height);
     desc.water.forward_scatter = {};

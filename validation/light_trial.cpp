@@ -115,7 +115,7 @@ constexpr std::array<Layer, 4> k_part_layers{Layer::direct, Layer::backscatter,
                                              Layer::multiple_volume, Layer::multiple_surface};
 constexpr const char* k_layers = "direct,backscatter,multiple.volume,multiple.surface";
 
-/// What is compared: which of LightParts.
+/// The parts of LightParts that are compared.
 struct Light {
     const char* name;
     bool volume, surface;

@@ -14,7 +14,7 @@ namespace uw {
 /// The mean of independent estimates, and its standard error by their spread.
 class LightMean {
   public:
-    /// By Welford's recurrence: means that differ little keep their digits.
+    /// Adds a value by Welford's recurrence, which avoids cancellation.
     void add(double estimate) {
         ++count_;
         const double before = estimate - mean_;

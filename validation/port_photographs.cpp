@@ -51,13 +51,13 @@ constexpr PhotographSet k_sets[] = {
      0.465, 14.3, 0.05, 0},
 };
 
-/// What was photographed at once: points in the camera's frame [m], and where they were found [px].
+/// One photograph: points in the camera's frame [m], and where they were found [px].
 struct Corners {
     std::vector<Point3> points;
     std::vector<ImagePoint> found;
 };
 
-/// Found minus seen, of points moved by `motion`.
+/// The differences between found and imaged positions, with the points moved by `motion`.
 std::vector<ImagePoint> residuals_of(const Camera& camera, const Corners& corners,
                                      const Affine& motion) {
     std::vector<ImagePoint> residuals;

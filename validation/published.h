@@ -14,9 +14,9 @@ struct PublishedComparison {
     bool passed() const;
 };
 
-/// Computes what others have published: where real cameras behind ports have seen corners of
-/// boards, the canonical problems of ocean optics, the scattering of measured waters, and what
-/// Blender's Cycles makes of a lamp in water. Throws Interrupted.
+/// Computes published results: the corners of boards in photographs by real cameras behind ports,
+/// the canonical problems of ocean optics, the scattering of measured waters, and a lamp in water
+/// rendered by Blender's Cycles. Throws Interrupted.
 PublishedComparison compare_with_published(const PublishedOptions& options);
 
 }  // namespace uw

@@ -16,7 +16,7 @@ struct PublishedFigure {
     double tolerance = 0;   // of ours, relative to the published, beside two standard errors
     bool is_bound = false;  // ours is to be no greater, rather than the same
 
-    /// Where plots show it: in a panel, as part of a curve, at a place along the horizontal axis.
+    /// Its position in plots: the panel, the curve, and the position along the horizontal axis.
     /// None shows it if `panel` is empty.
     struct Place {
         std::string panel, curve, axis;

@@ -190,7 +190,7 @@ class SceneTrial {
         scatter(method, trial, trial.renderer.make_transport());
     }
 
-    // What a method may itself be off by if its image still changes so much; nothing if it has
+    // The error of a method itself if its image still changes this much; none if it has
     // converged.
     static double own_error(double change, double tolerance) {
         return change > tolerance ? change : 0;

@@ -28,7 +28,7 @@ struct MethodImage {
     std::vector<Spectrum> blurred_backscatter;  // with forward scatter
 };
 
-/// Which part of a picture is compared.
+/// The component of a picture that is compared.
 struct Component {
     const char* name;
     std::vector<Spectrum> MethodImage::*image;
@@ -39,7 +39,7 @@ inline constexpr Component k_forward{"forward", &MethodImage::forward};
 inline constexpr Component k_blurred_backscatter{"blurred backscatter",
                                                  &MethodImage::blurred_backscatter};
 
-/// How two methods differ in one component and band.
+/// The difference of two methods in one component and band.
 struct Check {
     std::string left, right;  // names of the methods, keys of SceneValidation::images
     Component component;
@@ -49,12 +49,12 @@ struct Check {
     double dark = 0;           // darker pixels count as this fraction of the mean
     double largest = 0;        // relative, over these pixels
     double rms = 0;            // over all pixels, of the image's mean
-    double own = 0;            // what `right` may itself be off by; 0 if it has converged
+    double own = 0;            // the error of `right` itself; 0 if it has converged
     double tolerance = 0;      // of `largest`, with `own`
     double rms_tolerance = 0;  // of `rms`
-    /// Whether `largest` is of any pixel; else that nothing is beyond its tolerance says little.
+    /// Whether any pixel was compared; otherwise the absence of differences means little.
     bool is_compared() const { return pixels > 0; }
-    /// Whether nothing is beyond its tolerance.
+    /// Whether all differences are within their tolerances.
     bool passed() const { return largest <= tolerance && rms <= rms_tolerance; }
 };
 
@@ -85,12 +85,12 @@ struct SceneValidation {
 /// all in uniform water (a scene with volumes is homogenised: its grids replaced by their mean),
 /// and on the scene's own grids the volume against the reference integrator. With forward scatter
 /// also its effect on each method's light: the finest sum over planes, the reference integrator, a
-/// VDB that holds half of the water, and a sum over all pairs of pixels against the volume
+/// VDB that contains half of the water, and a sum over all pairs of pixels against the volume
 /// integrator. Throws InputError, and Interrupted.
 SceneValidation validate_scene(const ImageScene& scene, const std::string& name,
                                const ValidationOptions& options);
 
-/// How far single pixels are apart, over a number of them.
+/// The differences of single pixels, over a number of them.
 struct PixelSpread {
     std::size_t pixels = 0;
     double rms = 0;              // of the image's mean
@@ -98,8 +98,8 @@ struct PixelSpread {
     double worst_in_errors = 0;  // the largest of these
 };
 
-/// How two estimates of some light differ, at least one of which has a standard error. Relative to
-/// the mean of all light in the band.
+/// The difference of two estimates of some light, at least one of which has a standard error.
+/// Relative to the mean of all light in the band.
 struct LightCheck {
     /// A deviation beyond so many standard errors is a fault; and so is noise of single pixels of
     /// so many times the stated error.
@@ -116,7 +116,7 @@ struct LightCheck {
     bool passed() const;
 };
 
-/// The mean radiance of an image, per band, by the way that the light took [W m^-2 sr^-1].
+/// The mean radiance of an image, per band, by the path of the light [W m^-2 sr^-1].
 struct LightParts {
     static constexpr std::array<const char*, 4> k_names{"direct", "backscatter", "multiple.volume",
                                                         "multiple.surface"};

@@ -372,7 +372,8 @@ class Kernel {
                 fractions_[j * side_ + i] = corner(shape, (static_cast<double>(i) + 0.5) / s,
                                                    (static_cast<double>(j) + 0.5) / t);
         outside_ = 1 - 4 * fractions_.back();
-        // From integrals over [0, x] x [0, y] to those over pixels; the kernel is even.
+        // Differences turn integrals over [0, x] x [0, y] into those over pixels; the kernel is
+        // even.
         const auto difference = [this](std::size_t begin, std::size_t step) {
             double* const first = fractions_.data() + begin;
             for (std::size_t i = side_ - 1; i > 0; --i) first[i * step] -= first[(i - 1) * step];
@@ -386,12 +387,12 @@ class Kernel {
         return fractions_[static_cast<std::size_t>(std::abs(down)) * side_ +
                           static_cast<std::size_t>(std::abs(across))];
     }
-    /// The fraction that goes farther than the reach.
+    /// The fraction that goes beyond these pixels.
     double outside() const { return outside_; }
 
   private:
-    // Integral over [0, x] x [0, y], in units of s: of the exponential kernel the solid angle of
-    // the rectangle seen from height 1, over 2 pi; of a Gaussian of variance 2.
+    // Integral over [0, x] x [0, y], in units of s: for the exponential kernel the solid angle of
+    // the rectangle as viewed from height 1, over 2 pi; for the Gaussian one of variance 2.
     static double corner(ForwardScatterDesc::Shape shape, double x, double y) {
         if (shape == ForwardScatterDesc::Shape::exponential)
             return std::atan2(x * y, std::sqrt(1 + x * x + y * y)) / (2 * std::numbers::pi);
@@ -403,13 +404,13 @@ class Kernel {
     double outside_ = 0;
 };
 
-// Where the mirror images of an image `side` pixels long have pixel `i`.
+// The pixel of an image of `side` pixels that its mirror images have at position `i`.
 int mirrored(int i, int side) {
     const int place = ((i % (2 * side)) + 2 * side) % (2 * side);
     return place < side ? place : 2 * side - 1 - place;
 }
 
-/// What a camera's pixels see of surfaces.
+/// The surfaces at a camera's pixels.
 struct SurfaceImage {
     Image irradiance, response;               // W/m^2; radiance at the camera per irradiance [1/sr]
     Image direct;                             // radiance at the camera that was not scattered

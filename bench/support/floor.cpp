@@ -51,7 +51,7 @@ double Floor::trace() const {
 
 double Floor::sum_voxels() const {
     double sum = 0;
-    // What a Renderer assembles is a GridField, whatever the scene holds.
+    // A Renderer always assembles a GridField, whatever the scene contains.
     for (const GridVolume& volume : dynamic_cast<const GridField&>(scene_.field->grids()).volumes())
         for (const NanoGrid& brick : volume.bricks()) sum += brick.stored_sum();
     return sum;

@@ -12,7 +12,7 @@ void write_seabed(const std::filesystem::path& file, int triangles);
 /// Side of the box of fog [m]: x -1.35..1.05, y 0..2.4, z -1.2..1.2.
 inline constexpr double k_fog_side = 2.4;
 
-/// What a box of fog holds, in values of about 0 to 1.
+/// The contents of a box of fog, in values of about 0 to 1.
 enum class Fog {
     dense,   // noise that is above 0 everywhere
     sparse,  // clouds of it, with nothing between them

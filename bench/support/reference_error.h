@@ -4,8 +4,8 @@
 
 namespace uw::bench {
 
-/// How far a scene's image is from the reference integrator's, on a lattice of its pixels. All
-/// bands of the total radiance, relative to their mean over these pixels.
+/// The error of a scene's image relative to the reference integrator, on a lattice of its pixels.
+/// All bands of the total radiance, relative to their mean over these pixels.
 struct ReferenceError {
     int pixels = 0;
     double rmse = 0;       // root of the mean square difference

@@ -518,7 +518,7 @@ TEST_F(WaveImage, RefusesWhatIsNoHeight) {
 }
 
 // The way to a surface is found in steps that are the shorter the steeper it is: what has slopes
-// for which a ray would take minutes is refused, and says how to hint it.
+// for which a ray would take minutes is refused, and says how to fix it.
 TEST_F(WaveImage, RefusesSlopesThatNoWaterHas) {
     const std::filesystem::path file = write();
     EXPECT_NO_THROW(read(file, 0.1));  // of up to 6: 0.08 times as wide as the waves were
