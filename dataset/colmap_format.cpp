@@ -18,16 +18,16 @@ namespace uw {
 
 namespace {
 
-/// What is known of a point once all views are there.
+/// The data of a point once all views exist.
 struct Track {
-    std::array<int, 3> rgb{};  // where it is seen first
+    std::array<int, 3> rgb{};  // from the first image that shows it
     double error = 0;          // sum of the distances between its images and the stock model's [px]
     struct Place {
         std::uint32_t image, observation;
     };
     std::vector<Place> places;
 
-    // COLMAP has no points that one image alone sees.
+    // COLMAP has no points that only one image shows.
     bool is_kept() const { return places.size() > 1; }
 };
 

@@ -48,7 +48,7 @@ class Manifest {
     std::string views_;  // of JSON, separated by commas
 };
 
-/// What a page shows of a view.
+/// The entry of a view on a page.
 struct PageView {
     std::string label;                  // "frame 12, left"
     std::vector<std::string> pictures;  // files relative to the set's folder
@@ -189,11 +189,11 @@ class Completion {
         throw_if_stopped();
     }
 
-    /// Checks that all views which are there were rendered from the same files. This comes first,
-    /// since what they have in common differs as well if they were not.
+    /// Checks that all existing views were rendered from the same files. This comes first, since
+    /// otherwise the files that they share differ as well.
     void check_inputs() const {
         struct InputOf {
-            std::string sum, view;  // as the first view has it that was rendered from it
+            std::string sum, view;  // of the first view that was rendered from it
         };
         std::map<std::string, InputOf> inputs;
         for (std::size_t index = 0; index < definition_.view_count(); ++index) {
@@ -249,8 +249,8 @@ class Completion {
             faulty.size() == 1 ? "is" : "are", names, faulty.size() > k_named ? ", ..." : ""));
     }
 
-    /// Removes what AtomicFile could not because its process was killed. Nothing of other machines
-    /// works on the set any more, since all views are there.
+    /// Removes files that AtomicFile could not because its process was killed. No other machine
+    /// works on the set any more, since all views exist.
     void remove_left_overs() const {
         std::error_code error;
         std::vector<fs::path> folders{folder_};
@@ -283,7 +283,7 @@ class Completion {
                               static_cast<double>(definition_.draws.size() + 1));
     }
 
-    /// Lists what the views of a draw have in common, and reads the fits among it.
+    /// Lists the files that the views of a draw share, and reads the fits among them.
     void take_shared(CompleteSequence& sequence) {
         const std::vector<SetFile>& shared = sequence.records.front().shared;
         std::vector<std::size_t> others;
@@ -331,7 +331,7 @@ class Completion {
         return (index * most + most - 1) / count != ((index + 1) * most + most - 1) / count;
     }
 
-    /// What shows a view: its image, in the folder of whichever format has it.
+    /// The picture of a view: its image, in the folder of the first format that has one.
     static const SetFile* picture_of(const ViewRecord& record) {
         const auto found = std::ranges::find_if(
             record.files, [](const SetFile& file) { return file.role.starts_with("image"); });

@@ -198,8 +198,8 @@ Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out) {
 
 namespace {
 
-/// What formats without ports make of a camera that has one; empty for one without. `fitted_in` are
-/// those in which it is fitted; empty: none.
+/// How formats without ports represent a camera that has one; empty for one without. `fitted_in`
+/// are those in which it is fitted; empty: none.
 std::string pinhole_lines(const Json& camera, const std::optional<PinholeFit>& fit,
                           const std::string& fitted_in) {
     if (!fit) return {};

@@ -13,12 +13,13 @@
 
 namespace uw {
 
-/// What a data card says of a scene: water, lamps, cameras, what is in it and how it is rendered.
+/// The facts about a scene for a data card: water, lamps, cameras, contents and rendering.
 /// `first` is the resolved scene of the set's first view, and `left_out` what some of its views
 /// leave out (estimate_light_left_out).
 Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out);
 
-/// One line on the light that the images leave out, as a run says it; empty: little, or none.
+/// One line on the light that the images leave out, for the messages of a run; empty if it is
+/// little.
 std::string light_note(const DatasetFile& set);
 
 /// The data card of a set, README.md in Markdown. `fits` are those of its first draw, and `bytes`

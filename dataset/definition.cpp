@@ -36,7 +36,7 @@ Json optional_json(const std::optional<double>& value) {
     return value ? Json(*value) : Json(nullptr);
 }
 
-/// What the values of a key are called in messages about a difference.
+/// The name of a key's values in messages about a difference.
 std::string shown(const Json& value) {
     constexpr std::size_t k_longest = 60;
     const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
@@ -164,7 +164,7 @@ namespace fs = std::filesystem;
 
 constexpr int k_dataset_version = 3;
 
-/// Whether there is anything in the folder but what AtomicFile left when it was killed.
+/// Whether the folder contains anything but temporary files of killed processes.
 bool has_files(const fs::path& folder) {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error))

@@ -17,7 +17,7 @@ struct View {
     friend bool operator==(const View&, const View&) = default;
 };
 
-/// What images are multiplied by before they are encoded as sRGB, the same for all of a set.
+/// The factors on images before they are encoded as sRGB, the same for all of a set.
 struct Exposures {
     double image = 1;
     double clean = 1;  // of the images without water
@@ -25,8 +25,8 @@ struct Exposures {
     friend bool operator==(const Exposures&, const Exposures&) = default;
 };
 
-/// What a data set is: which views it has, and what is written of each. Two processes that work on
-/// the same folder have the same, as its file `dataset.json` says.
+/// The definition of a data set: its views and the files written for each. All processes that work
+/// on the same folder use the same, by its file `dataset.json`.
 struct DatasetDefinition {
     std::string program;     // "uwvdb 1.0.0"
     std::string command;     // by which it can be made again
@@ -81,11 +81,11 @@ Json definition_json(const DatasetDefinition& definition);
 /// definition_json's.
 DatasetDefinition definition_from_json(const Json& json, const std::string& subject);
 
-/// What differs between two, for a message: "its frames are 0-48 there, 0-20 here"; empty if
-/// nothing differs but, perhaps, the spelling of the command.
+/// The differences between two definitions, for a message: "its frames are 0-48 there, 0-20 here";
+/// empty if nothing differs but, perhaps, the spelling of the command.
 std::string difference(const DatasetDefinition& there, const DatasetDefinition& here);
 
-/// What the file `dataset.json` says, by which every process that works on a set has the same.
+/// The contents of the file `dataset.json`, by which all processes that work on a set agree.
 struct DatasetFile {
     DatasetDefinition definition;
     Exposures exposures;

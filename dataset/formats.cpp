@@ -64,7 +64,7 @@ bool needs_points(const DatasetDefinition& definition) {
 
 namespace {
 
-/// The set's formats that do with ports what fulfils `is_meant`, in their order.
+/// The set's formats whose treatment of ports fulfils `is_meant`, in their order.
 std::string formats_whose(const DatasetDefinition& definition,
                           const std::function<bool(DatasetFormat::Ports)>& is_meant) {
     std::string names;

@@ -17,16 +17,16 @@
 
 namespace uw {
 
-/// All views of one draw, in their order, once they are written: what formats make tables of.
+/// All views of one draw, in their order, once they are written, from which formats make tables.
 struct CompleteSequence {
     const DatasetDefinition& definition;
     std::size_t draw = 0;
     std::string folder;  // DatasetDefinition::folder
     std::vector<ViewRecord> records;
-    /// What is fitted to each camera with a port (fit_pinholes); none for any if no format asks.
+    /// The fit to each camera with a port (fit_pinholes); none if no format asks for it.
     PinholeFits fits;
 
-    /// A camera of the set without its port, as formats describe it that know none.
+    /// A camera of the set without its port, for formats that cannot describe ports.
     CameraDesc portless(std::size_t camera) const {
         return without_port(at(0, camera).camera,
                             camera < fits.size() ? fits[camera] : std::nullopt,
@@ -66,9 +66,9 @@ struct DatasetFormat {
     std::string_view layers = {};
     bool needs_points = false;  // ViewImages::points
     bool needs_images = false;  // those of png, which is then written as well
-    /// What it makes of a camera behind a port: it describes the port (or has no cameras); it knows
-    /// none, and has the camera in air, or fitted with --pinhole-fit; or it has the camera in air
-    /// always, because one of its files has no place for the distortion of a fit.
+    /// How it represents a camera behind a port: it describes the port (or has no cameras); it
+    /// cannot describe ports, and has the camera in air, or fitted with --pinhole-fit; or it always
+    /// has the camera in air, because one of its files has no room for the distortion of a fit.
     enum class Ports { described, fitted, in_air };
     Ports ports = Ports::described;
     /// Throws UsageError of one line for a set that it cannot express. `scene` is that of the first
@@ -76,7 +76,7 @@ struct DatasetFormat {
     void (*check)(const DatasetDefinition& definition, const SceneDesc& scene) = nullptr;
     /// Writes the files of one view; called from several threads for different views. May be null.
     void (*write_view)(const ViewImages& images, SetFiles& files) = nullptr;
-    /// Writes what needs all views of a draw. May be null.
+    /// Writes the files that need all views of a draw. May be null.
     void (*complete)(const CompleteSequence& sequence, SetFiles& files) = nullptr;
 };
 
@@ -101,7 +101,7 @@ DatasetFormat calibration_format();
 /// Every format, in the order in which --help lists them.
 std::span<const DatasetFormat> dataset_formats();
 
-/// The format of a name. Throws UsageError that lists those there are.
+/// The format of a name. Throws UsageError that lists the existing ones.
 const DatasetFormat& dataset_format(std::string_view name);
 
 /// The layers that a set's formats are made of, as LayerPlan takes them.
@@ -122,8 +122,7 @@ std::string formats_in_air(const DatasetDefinition& definition);
 void write_view(const std::filesystem::path& folder, const std::string& sum,
                 const ViewImages& images);
 
-/// The record of a view all of whose files are as they were written, by their checksums; none if
-/// there is none.
+/// The record of a view if all of its files are unchanged, by their checksums; else none.
 std::optional<ViewRecord> complete_record(const std::filesystem::path& folder,
                                           const DatasetDefinition& definition,
                                           const std::string& sum, const View& view);

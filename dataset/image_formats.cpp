@@ -126,7 +126,7 @@ DatasetFormat depth_format() {
 
 namespace {
 
-/// A grey image of what `value` says of each pixel.
+/// A grey image of `value` at each pixel.
 template <class Value>
 DigitalImage grey_image(const ViewImages& images, int bits, const Value& value) {
     DigitalImage image{images.width(), images.height(), 1, bits, false, {}};

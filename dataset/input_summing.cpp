@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file's name as sets made elsewhere have it, too: relative to the scene's folder.
+/// A file's name that is the same in sets made elsewhere: relative to the scene's folder.
 std::string name_of_input(const fs::path& file, const fs::path& scene) {
     const auto whole = [](const fs::path& path) { return fs::absolute(path).lexically_normal(); };
     return whole(file).lexically_relative(whole(scene).parent_path()).generic_string();
@@ -23,7 +23,7 @@ InputSums InputSummer::sums_of(const SceneDesc& whole, const ImageChoice& choice
     InputSums sums;
     std::vector<std::pair<std::string, fs::path>> files;
     for (const InputFile& input : input_files(whole, choice, side_files_)) {
-        // A folder or a device that some key names is for its reader to refuse.
+        // A folder or a device that a key names is rejected by its reader.
         std::error_code error;
         if (input.is_hashed || !fs::is_regular_file(input.file, error)) continue;
         std::string name = name_of_input(input.file, whole.file);

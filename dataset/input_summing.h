@@ -13,13 +13,13 @@
 
 namespace uw {
 
-/// Finds the checksums of the files that images are rendered from. A file is read once, unless it
-/// changes: what all frames have in common costs nothing from the second on.
+/// Computes the checksums of the files from which images are rendered. A file is read once, unless
+/// it changes, so that files common to all frames cost nothing from the second frame on.
 class InputSummer {
   public:
-    /// The sums of the files of an image as they are now. To be called before they are loaded: of a
-    /// file that changes in between it is the sum of what was there before, so that the view is
-    /// rendered again. Throws as input_files does; IoError for a file that cannot be read.
+    /// The sums of the files of an image as they are now. To be called before they are loaded: if a
+    /// file changes in between, its sum is that of the old content, so that the view is rendered
+    /// again. Throws as input_files does; IoError for a file that cannot be read.
     InputSums sums_of(const SceneDesc& whole, const ImageChoice& choice);
 
   private:

@@ -176,7 +176,7 @@ CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen
     const FittedLens lens(camera.distortion);
     const PinholeSquares squares(lens, seen);
     const IntrinsicsDesc& air = camera.intrinsics;
-    // An undistorted lens to begin with: but for products of focal length and coefficients the
+    // Starts with an undistorted lens: apart from products of focal length and coefficients the
     // problem is linear, so that a few steps suffice.
     std::vector<double> here{air.fx, air.fy, air.cx, air.cy};
     here.resize(4 + lens.count());
@@ -214,8 +214,8 @@ CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen
 
 namespace {
 
-/// What a camera of a set sees in a few of its views: first the pixels that see a surface, then
-/// those that do not, of which `surfaces` tells how many the former are.
+/// The pixels of a camera in a few of its views: first the `on_surfaces` pixels that show a
+/// surface, then the others.
 struct SeenByCamera {
     std::vector<SeenPixel> pixels;
     std::size_t on_surfaces = 0;
@@ -253,8 +253,8 @@ SeenByCamera seen_by_camera(const DatasetDefinition& definition, std::size_t dra
     seen.on_surfaces = seen.pixels.size();
     if (seen.on_surfaces == 0) return seen;
     std::ranges::sort(seen.distances);
-    // Where no surface is seen the model is to be true at the usual distance: a polynomial that
-    // nothing holds there would be far off, and views between those looked at may see one.
+    // Where no surface is visible the model should be right at the usual distance: an unconstrained
+    // polynomial would be far off there, and other views may show a surface there.
     for (std::size_t i = 0; i < open.size(); ++i)
         seen.pixels.push_back(
             {open[i].pixel, camera_from_world[i] * open[i].ray.at(seen.quantile(0.5))});
@@ -347,7 +347,7 @@ PinholeFits read_pinholes(const std::filesystem::path& file, std::size_t cameras
             fits.push_back(entry.is_null() ? std::nullopt : std::optional(fit_from(entry)));
         if (fits.size() == cameras) return fits;
     } catch (const Json::exception&) {
-        // It is said below.
+        // Reported below.
     }
     throw InputError(
         fmt::format("{}: is not what uwvdb wrote there; make the set again", file.string()));
@@ -369,13 +369,13 @@ std::string error_text(const ModelError& error) {
 
 namespace {
 
-/// The camera of a rig that is off the most in air; null where that does not matter.
+/// The camera of a rig with the greatest error in air; null if that does not matter.
 const PinholeFit* max_off(const PinholeFits& fits) {
     const PinholeFit* most = nullptr;
     for (const auto& fit : fits)
         if (fit && (most == nullptr || fit->in_air.rms > most->in_air.rms)) most = &*fit;
-    constexpr double k_without_a_word = 0.1;  // [pixels]
-    return most == nullptr || most->in_air.rms < k_without_a_word ? nullptr : most;
+    constexpr double k_negligible = 0.1;  // [pixels]
+    return most == nullptr || most->in_air.rms < k_negligible ? nullptr : most;
 }
 
 }  // namespace

@@ -14,14 +14,14 @@
 
 namespace uw {
 
-/// A position in the image of a camera, and the point that it sees there.
+/// A position in the image of a camera, and the point that is imaged there.
 struct SeenPixel {
     ImagePoint pixel;
     Point3 point;  // camera frame [m]
 };
 
-/// How far a model of a camera places points from where the camera sees them [pixels]. A point that
-/// the model does not image at all counts as one that is off by the image's diagonal.
+/// The reprojection error of a model of a camera [pixels]. A point that the model does not image at
+/// all counts with an error of the image's diagonal.
 struct ModelError {
     double median = 0, rms = 0, worst = 0;
 
@@ -31,13 +31,14 @@ struct ModelError {
 /// `model` has no port; its pose is not used. Precondition: `seen` is not empty.
 ModelError model_error(const CameraDesc& model, std::span<const SeenPixel> seen);
 
-/// The camera without a port, at the same place, that images these points closest to where `camera`
-/// sees them through its own (least squares): COLMAP's OPENCV_FISHEYE of a fisheye lens, else
+/// Fits a camera without a port, at the same position, to the images of these points in `camera`
+/// through its port (least squares): COLMAP's OPENCV_FISHEYE of a fisheye lens, else
 /// OPENCV, whose k3 is fitted as well if the lens has more than two radial coefficients. Throws
 /// InputError if the points do not determine it.
 CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen);
 
-/// A camera with a port as a model without one has it, for the surfaces that a draw's views see.
+/// The model without a port of a camera with one, for the surfaces that are visible in a draw's
+/// views.
 struct PinholeFit {
     double nearest = 0, median = 0, farthest = 0;  // surfaces, without 5 % at either end [m]
     ModelError in_air;                             // of the camera's own lens
@@ -49,7 +50,7 @@ struct PinholeFit {
 };
 
 /// The fits of a draw's cameras, in the order of the set; none for a camera without a port, and for
-/// one that sees no surface.
+/// one in whose views no surface is visible.
 using PinholeFits = std::vector<std::optional<PinholeFit>>;
 
 /// Fits every camera that has a port to what it sees in up to 16 of its views, evenly over the
@@ -71,11 +72,11 @@ CameraDesc without_port(CameraDesc camera, const std::optional<PinholeFit>& fit,
 std::string error_text(const ModelError& error);
 
 /// One line about the cameras of these fits in `formats`, which know no port and have them fitted,
-/// for a run's messages: how far they are off so, and in air. Empty where that does not matter.
+/// for a run's messages: their errors as fitted, and in air. Empty if these do not matter.
 std::string fitted_message(const std::string& formats, const PinholeFits& fits);
 
-/// The same for `formats` that have them as they are in air; --pinhole-fit fits, or would fit,
-/// those of `fittable`.
+/// The same for `formats` that describe cameras as in air; --pinhole-fit fits, or would fit, those
+/// of `fittable`.
 std::string in_air_message(const std::string& formats, const std::string& fittable,
                            const PinholeFits& fits);
 

@@ -55,7 +55,7 @@ inline void append_floats(std::string& text, std::span<const float> values) {
 
 /// A file of a data set that has been written.
 struct SetFile {
-    std::string role;  // what it is of its view: "image", "depth"
+    std::string role;  // its kind: "image", "depth"
     std::string path;  // relative to the set's folder, with slashes
     std::uint64_t bytes = 0;
     std::string sha256;
@@ -76,14 +76,14 @@ class SetFiles {
   public:
     explicit SetFiles(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Has `write` write the file of this name. Throws IoError, and what `write` throws.
+    /// Calls `write` to write the file of this name. Throws IoError, and what `write` throws.
     void add(std::string role, std::string path,
              const std::function<void(const std::filesystem::path& file)>& write);
     /// Writes a file of these bytes. Throws IoError.
     void add_bytes(std::string role, std::string path, std::string_view bytes);
     /// Writes the bytes of another file of the set. Throws IoError.
     void add_copy(std::string role, std::string path, const std::string& from);
-    /// Lists a file that is there already.
+    /// Lists an existing file.
     void take(SetFile file) { written_.push_back(std::move(file)); }
 
     const std::vector<SetFile>& written() const { return written_; }

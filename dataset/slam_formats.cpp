@@ -93,7 +93,7 @@ std::string cam_folder(const DatasetDefinition& definition, std::size_t draw, st
     return fmt::format("{}mav0/cam{}/", definition.folder(draw), camera);
 }
 
-/// Throws UsageError for frames of which some have stamps of 19 digits and others have not.
+/// Throws UsageError if only some frames have stamps of 19 digits.
 void check_euroc_stamps(const DatasetDefinition& definition, const SceneDesc& scene) {
     if (!has_motion(scene)) return;
     const FrameStamps stamps(scene);

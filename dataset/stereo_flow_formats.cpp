@@ -61,7 +61,7 @@ void check_rectified(const DatasetDefinition& definition, const SceneDesc& scene
 
 /// Throws InputError if the disparity of an image is not along its rows.
 void check_disparity(const ViewImages& images) {
-    // 1e-3 px is what disparity is exact to.
+    // Disparity is accurate to 1e-3 px.
     constexpr double k_along_rows = 1e-3;
     images.for_each_pixel([&](int x, int y) {
         const float across = images.at(Layer::disparity, x, y)[1];
@@ -73,7 +73,7 @@ void check_disparity(const ViewImages& images) {
     });
 }
 
-/// What stands where nothing is known: readers take values above 1e9 for that.
+/// The value of unknown flow: readers take values above 1e9 for that.
 constexpr float k_unknown_flow = 1e10F;
 
 /// The .flo of Middlebury's flow benchmark (Baker et al. 2011): 202021.25, width, height, then u
@@ -299,7 +299,7 @@ void write_calibrations(const CompleteSequence& sequence, SetFiles& files) {
 }
 
 /// The benchmark's cameras 0 and 2 are on the left, 1 and 3 on the right; Tr is from a laser
-/// scanner, for which the left camera stands.
+/// scanner, for which the left camera is used.
 std::string sequence_calibration(const CameraDesc& left, const CameraDesc& right, double baseline) {
     std::string text;
     for (const int number : {0, 1, 2, 3}) {

@@ -23,17 +23,17 @@ std::string points_csv(const std::vector<Landmark>& points);
 /// Throws IoError, and InputError for anything but points_csv's.
 std::vector<Landmark> read_points(const std::filesystem::path& file);
 
-/// How many surface points a draw has at most.
+/// The greatest number of surface points of a draw.
 inline constexpr std::size_t k_max_points = 4096;
 
-/// What a camera sees at a place of its image.
+/// The ray, and the surface hit by it, at a position of a camera's image.
 struct ImageSight {
     ImagePoint pixel;
     Ray ray;                        // in the water, world space
     std::optional<SurfaceHit> hit;  // none: no surface
 };
 
-/// What it sees in the middles of `side` times `side` equal parts of its image, where it has rays.
+/// These at the centres of `side` times `side` equal parts of its image, where it has rays.
 std::vector<ImageSight> sights_of(const Camera& camera, int side, const Surfaces& surfaces);
 
 /// The camera of a view, with its pose, in the scene of its draw.
@@ -41,8 +41,8 @@ CameraDesc camera_of_view(const DatasetDefinition& definition, const SceneDesc& 
                           const View& view);
 
 /// Points on the surfaces that never move, evenly over the images of up to 64 views of a draw, as
-/// they are seen past the surfaces of its first frame. `scene` is the draw's, as it was
-/// read, and `surfaces` are those of its first frame.
+/// far as the surfaces of its first frame do not hide them. `scene` is the draw's, as it was read,
+/// and `surfaces` are those of its first frame.
 std::vector<Landmark> point_seeds(const DatasetDefinition& definition, std::size_t draw,
                                   const SceneDesc& scene, const Surfaces& surfaces);
 
@@ -50,14 +50,14 @@ std::vector<Landmark> point_seeds(const DatasetDefinition& definition, std::size
 ImageChoice choice_of(const DatasetDefinition& definition, const SceneDesc& scene,
                       const View& view);
 
-/// Where a view sees one of its set's surface points.
+/// The position of one of its set's surface points in a view.
 struct Observation {
     std::uint32_t point = 0;  // its place in the list of points
     double x = 0, y = 0;      // [pixels]
     std::array<int, 3> rgb{};
 };
 
-/// The points that the view sees: through lens and port, within the image and not hidden.
+/// The points that are visible in the view: through lens and port, within the image and not hidden.
 std::vector<Observation> observations(const ViewImages& images);
 
 std::string observations_csv(const std::vector<Observation>& observations);

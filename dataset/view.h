@@ -24,16 +24,16 @@
 
 namespace uw {
 
-/// A point of a surface that does not move, by which cameras of a set can be related.
+/// A point of a static surface, by which cameras of a set can be related.
 struct Landmark {
     Point3 position;  // world
 };
 
 /// The checksums (SHA-256) of the files that a view was rendered from, by their names relative to
-/// the scene's folder. Those that the scene's own hash tells of are not among them.
+/// the scene's folder. Files that are part of the scene's own hash are not among them.
 using InputSums = std::map<std::string, std::string>;
 
-/// A view that has been rendered: what formats write files of.
+/// A view that has been rendered, of which formats write files.
 struct ViewImages {
     const DatasetDefinition& definition;
     View view;
@@ -46,7 +46,7 @@ struct ViewImages {
     LayerPlan plan;                      // of the film
     std::optional<DigitalImage> sensor;  // the camera's own image
     Exposures exposures;
-    std::shared_ptr<const ColourView> display;  // what pictures are seen through; null: sRGB
+    std::shared_ptr<const ColourView> display;  // the view of pictures; null: sRGB
     ImageMetadata metadata;
     std::shared_ptr<const Surfaces> surfaces;
     std::shared_ptr<const std::vector<Landmark>> points;  // null: no format needs them
@@ -85,7 +85,7 @@ void write_image(const ViewImages& images, SetFiles& files, const std::string& r
 
 /// Writes the surfaces' distance along the camera's axis as a PNG of 16 bits: times `scale`
 /// [1/m], rounded; 0 where there is no surface or it is beyond DatasetDefinition::depth_far.
-/// Throws InputError for a distance that 16 bits cannot hold.
+/// Throws InputError for a distance that does not fit into 16 bits.
 void write_depth(const ViewImages& images, SetFiles& files, const std::string& role,
                  const std::string& path, double scale);
 
@@ -94,8 +94,8 @@ void write_depth(const ViewImages& images, SetFiles& files, const std::string& r
 Film clean_film(const Film& film, const LayerPlan& plan, const ColourDesc& colour,
                 std::span<const double> bands_nm);
 
-/// What a data set knows of a view that has been written: everything that its tables of cameras,
-/// poses and files are made of. Its file is written last, so that a view which has one is complete.
+/// The record of a view that has been written: everything from which the tables of cameras, poses
+/// and files are made. Its file is written last, so that a view which has one is complete.
 struct ViewRecord {
     View view;
     std::string set;         // the sum of the definition (sum_of)
@@ -103,13 +103,14 @@ struct ViewRecord {
     std::int64_t stamp = 0;  // likewise
     CameraDesc camera;       // resolution, intrinsics, distortion, port, pose: no more of it
     InputSums inputs;
-    /// Files that the views of a draw have in common and were made with: surface points, pinholes.
+    /// Files from which the view was made and which the views of a draw share: surface points,
+    /// pinholes.
     std::vector<SetFile> shared;
     std::vector<SetFile> files;
 
     /// The file with a role; null if there is none.
     const SetFile* file(std::string_view role) const;
-    /// Whether its files and those that it shares are whole (is_whole).
+    /// Whether its own and its shared files are whole (is_whole).
     bool has_all_files(const std::filesystem::path& folder, bool by_content) const;
 };
 

@@ -57,7 +57,7 @@ PosesByName poses_by_name(const std::filesystem::path& poses) {
     return by_name;
 }
 
-/// By the longest end of the path that is a name.
+/// Looks a picture up by the longest end of its path that is a name.
 const Pose* pose_of_picture(const std::filesystem::path& file, const PosesByName& poses) {
     const std::string path = name_of(file);
     for (std::size_t begin = 0; begin != std::string::npos;) {

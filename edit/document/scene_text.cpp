@@ -77,7 +77,7 @@ NodeRoute route_to(const ConfigNode& root, std::string_view path) {
             const std::string key = joined_key(*node, steps, i);
             for (index = 0; index < count && node->entries[index].key != key;) ++index;
         } else {
-            // Nothing here stands for more than one place, and entries may have no name.
+            // No node here is used in more than one place, and entries may have no name.
             const std::string& name = steps[i].key;
             for (index = name.empty() ? count : 0;
                  index < count && entry_name(*node, index, walked) != name;)
@@ -106,7 +106,7 @@ ConfigNode& node_in(ConfigNode& root, const NodeRoute& route) {
     return const_cast<ConfigNode&>(node_at(root, route));  // what it is part of is not const
 }
 
-/// Whether the node at `route` is written at its place, not reached through an alias.
+/// Whether the node at `route` is written in place rather than through an alias.
 bool is_written_there(const ConfigNode& root, const NodeRoute& route) {
     const ConfigNode* node = &root;
     return std::ranges::all_of(route, [&node](std::size_t index) {

@@ -15,7 +15,7 @@ namespace uw {
 
 namespace {
 
-/// Every place at which an alias stands for the value that begins at `definition`.
+/// The positions of all aliases of the value that begins at `definition`.
 void find_aliases(const ConfigNode& node, const ConfigPosition& definition,
                   const YamlLayout& layout, std::vector<std::size_t>& found) {
     if (node.alias.line > 0 && node.position.line == definition.line &&
@@ -26,7 +26,7 @@ void find_aliases(const ConfigNode& node, const ConfigPosition& definition,
         find_aliases(entry.value, definition, layout, found);
 }
 
-/// All that is written at its place, not reached through an alias.
+/// All nodes that are written in place rather than through an alias.
 void collect(const ConfigNode& node, std::vector<const ConfigNode*>& nodes) {
     if (node.alias.line > 0) return;
     nodes.push_back(&node);
@@ -52,7 +52,7 @@ struct SharedAnchor {
     std::size_t first_alias = 0;
 };
 
-/// The first of them that an alias outside `own` stands for.
+/// The first of them that has an alias outside `own`.
 SharedAnchor shared_anchor(const YamlSource& source, const std::vector<const ConfigNode*>& nodes,
                            TextSpan own) {
     const YamlLayout& layout = source.layout();
@@ -302,7 +302,7 @@ std::size_t node_count(const ConfigNode& node) {
     return count;
 }
 
-/// What to do first for `a`, the node at `route`, to mean the same as `b`.
+/// The first change that makes `a`, the node at `route`, more like `b`.
 std::optional<Difference> first_difference(const ConfigNode& a, const ConfigNode& b,
                                            NodeRoute& route) {
     using Kind = Difference::Kind;
@@ -346,7 +346,7 @@ YamlDraft::YamlDraft(std::string text, std::string origin, ConfigNode tree)
     : source_(std::move(text), std::move(origin), std::move(tree)) {}
 
 void YamlDraft::become(const ConfigNode& target) {
-    // Each round makes at least one node as it is to be; anchors that are handed on take their own.
+    // Each round corrects at least one node; passing on anchors takes rounds of its own.
     const std::size_t max_rounds = 8 + node_count(source_.tree()) + 2 * node_count(target);
     for (std::size_t round = 0; round < max_rounds; ++round) {
         NodeRoute start;

@@ -20,7 +20,7 @@ bool is_blank(char c) {
     return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
-/// What ends the name of an anchor or alias.
+/// The characters that end the name of an anchor or alias.
 bool ends_name(char c) {
     return c == '\0' || is_blank(c) || std::string_view(",[]{}").find(c) != std::string_view::npos;
 }

@@ -17,21 +17,22 @@ struct TextSpan {
     bool contains(std::size_t offset) const { return offset >= begin && offset < end; }
 };
 
-/// Where the parts of a parsed document lie in its text. Beginnings are the parser's positions;
-/// ends are found by reading on from there along the tree. Throws InputError for what is laid out
-/// in rare ways (keys after '?', entries without a value and the like). Refers to the text.
+/// The positions of the parts of a parsed document in its text. Beginnings are the parser's
+/// positions; ends are found by reading on from there along the tree. Throws InputError for what is
+/// laid out in rare ways (keys after '?', entries without a value and the like). Refers to the
+/// text.
 class YamlLayout {
   public:
     explicit YamlLayout(std::string_view text);
 
-    /// Where the parser says that something begins. Precondition: the position has a line.
+    /// The offset of a position of the parser. Precondition: the position has a line.
     std::size_t offset(const ConfigPosition& position) const;
 
     /// An entry of a map, from its key to the end of its value.
     TextSpan entry(const ConfigNode::Entry& entry) const;
     /// The key alone.
     TextSpan key(const ConfigNode::Entry& entry) const;
-    /// Where the colon of a key ends.
+    /// The end of a key's colon.
     std::size_t after_colon(const ConfigNode::Entry& entry) const;
     /// The value of an entry or the item of a list, with its anchor or as an alias. An empty value
     /// is an empty span behind the colon.
@@ -130,7 +131,7 @@ class YamlSource {
     const ConfigNode& node(const NodeRoute& route) const { return node_at(tree_, route); }
     /// The entry of a map that a route leads to; nullptr if it leads to a list's item or the root.
     const ConfigNode::Entry* entry(const NodeRoute& route) const;
-    /// Where the value or item lies, as YamlLayout says; the root has the rest of the text.
+    /// The span of the value or item, by YamlLayout; the root has the rest of the text.
     TextSpan span(const NodeRoute& route) const;
     /// Whether a map or list is written with brackets.
     bool is_flow(const NodeRoute& route) const;

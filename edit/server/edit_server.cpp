@@ -186,7 +186,7 @@ void refuse_for(Response& response, const std::exception_ptr& failure) {
 // Threads that answer. A request that needs more memory than there is ends alone.
 class Workers final : public httplib::TaskQueue {
   public:
-    // What it returns depends on the library's version.
+    // Its result depends on the library's version.
     auto enqueue(std::function<void()> serve) -> decltype(TaskQueue::enqueue({})) override {
         return pool_.enqueue([serve = std::move(serve)] {
             try {
@@ -293,7 +293,7 @@ EditServer::Page::Page(EditSession& session, int port, EditAddress where)
         [](const Request&, Response& response, const std::exception_ptr& failure) {
             refuse_for(response, failure);
         });
-    // What the library itself refuses has no body yet.
+    // Errors of the library itself have no body yet.
     server_.set_error_handler([](const Request&, Response& response) {
         if (!response.has_header("Content-Type"))
             refuse(response, response.status, "this is not a request that the editor understands");

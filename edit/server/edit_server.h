@@ -7,7 +7,7 @@
 
 namespace uw {
 
-/// Where the editor is reached. `everywhere` is for containers, whose ports are published on the
+/// The address of the editor. `everywhere` is for containers, whose ports are published on the
 /// addresses of their host: requests come by the network then, but have to name 127.0.0.1 or
 /// localhost as ever.
 enum class EditAddress { this_machine, everywhere };

@@ -17,7 +17,7 @@ const std::vector<PageFile>& page_files();
 /// The file of this name, or null.
 const PageFile* find_page_file(std::string_view name);
 
-/// What HTTP calls the content of a file of the page, by the ending of its name.
+/// The HTTP content type of a file of the page, by the ending of its name.
 std::string_view content_type(std::string_view name);
 
 }  // namespace uw

@@ -74,7 +74,7 @@ FileWatch::FileWatch(const std::filesystem::path& folder, std::function<void()> 
     : changed_(std::move(changed)),
       notified_(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)),
       stop_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
-    // Where there are no watches left, files are compared when they are saved, all the same.
+    // Without watches, files are still compared when they are saved.
     inotify_add_watch(notified_, folder.c_str(),
                       IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE);
     thread_ = std::thread([this] { run(); });
@@ -151,7 +151,7 @@ EditSession::~EditSession() {
 void EditSession::open() {
     try {
         SceneDocument fresh(file_);
-        // What was shown of the file's last version need not be in this one.
+        // The camera and frame of the previous version may not exist in this one.
         if (document_ && document_->disk_state() != DiskState::same) choice_.frame.reset();
         auto scene = read(fresh);
         if (document_)
@@ -188,7 +188,7 @@ void EditSession::take(std::shared_ptr<const EditedScene> scene) {
     announce();
 }
 
-// The scene of the document's text as it is; its revision is the next one.
+// Reads the scene from the document's current text; its revision is the next one.
 std::shared_ptr<const EditedScene> EditSession::read(const SceneDocument& document) const {
     const SceneText& scene = document.scene();
     return make_edited_scene(scene.text(), scene.tree(), file_, off_, revision_ + 1, choice_);
@@ -250,7 +250,7 @@ Json EditSession::outlines() const {
     return {{"key", outlines_key_}, {"segments", outline_segments_json(shapes_.outlines)}};
 }
 
-// Refuses what a window asks for that has not seen another one's change of the same.
+// Rejects the request of a window that does not know of another one's change to the same path.
 void EditSession::check_conflicts(std::int64_t revision, const std::string& group,
                                   const std::vector<std::string>& touched) const {
     if (revision > revision_)

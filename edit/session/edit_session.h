@@ -25,7 +25,7 @@
 
 namespace uw {
 
-/// Something that windows are to be told of.
+/// An event for the windows.
 struct Event {
     std::uint64_t number = 0;  // from 1
     std::string name;
@@ -45,7 +45,7 @@ class EventLog {
 
     /// Ends all waiting.
     void close();
-    /// Set once it is closed: for a StopScope around work that nobody waits for any more.
+    /// Set once it is closed: for a StopScope around work whose result is no longer needed.
     const std::atomic<bool>& is_closed() const { return is_closed_; }
 
   private:
@@ -78,8 +78,8 @@ class FileWatch {
 /// A scene that is being edited, by any number of windows: its document, its pictures, and what the
 /// windows are told. Thread safe; changes are made one after the other.
 ///
-/// A scene that cannot be read ends nothing: the state says why, and it is read again when its file
-/// has changed. Once it has been read, the last good one stays.
+/// A scene that cannot be read does not end the session: the state says why, and it is read again
+/// when its file has changed. The last valid scene is kept meanwhile.
 class EditSession {
   public:
     /// Throws IoError if there is no such file.
@@ -91,8 +91,8 @@ class EditSession {
     EditSession& operator=(EditSession&&) = delete;
 
     /// @name As docs/edit-api.md says
-    /// What is refused changes nothing: InputError and UsageError of one line, IoError, and
-    /// ConflictError for a request that another window, or another program, has outrun.
+    /// Requests that are rejected change nothing: InputError and UsageError of one line, IoError,
+    /// and ConflictError for a request that another window, or another program, has outrun.
     /// @{
     Json state() const;
     Json outlines() const;
@@ -112,7 +112,7 @@ class EditSession {
 
     /// The newest picture; null before the first.
     std::shared_ptr<const Picture> picture() const { return pictures_.picture(); }
-    /// The scene as it is now; null if none could be read yet.
+    /// The current scene; null if none could be read yet.
     std::shared_ptr<const EditedScene> scene() const;
     const PictureRenderer& pictures() const { return pictures_; }
     EventLog& events() { return events_; }
@@ -145,7 +145,7 @@ class EditSession {
     DiskState disk_ = DiskState::same;  // of the file, when it was looked at last
     std::string light_note_;  // what the scene's light lacks (left_out_note); empty: little
 
-    // Who changed what last, by path.
+    // The last window to change each path.
     struct Touch {
         std::int64_t revision = 0;
         std::string group;

@@ -25,18 +25,18 @@ namespace uw {
 /// The folder of a file: "." for a name alone.
 std::filesystem::path folder_of(const std::filesystem::path& file);
 
-/// What the editor knows of a lamp besides its description.
+/// The editor's data on a lamp besides its description.
 struct EditedLamp {
     /// The index of its entry in the file's list; none: a glTF file provides it.
     std::optional<std::size_t> entry;
-    /// What its light looks like but for its brightness: where it is the same, and so is
-    /// EditedScene::surrounding, the images of the lamp are multiples of each other.
+    /// Identifies its light apart from its brightness: if it and EditedScene::surrounding are
+    /// equal, the images of the lamp are multiples of each other.
     std::string key;
     Spectrum brightness;  // Lamp::axis_intensity: per band on the axis [W/sr]
     bool on = true;
 };
 
-/// A scene as it is after a change, never changed itself.
+/// A scene after a change; immutable.
 struct EditedScene {
     explicit EditedScene(ImageScene resolved) : scene(std::move(resolved)) {}
 
@@ -46,14 +46,14 @@ struct EditedScene {
     std::string surrounding;        // identifies all but the lamps
     bool has_plain_colour = true;   // R, G and B are the three bands
     std::shared_ptr<const Camera> camera;
-    std::shared_ptr<const ColourView> view;  // that pictures are seen through; null: sRGB
+    std::shared_ptr<const ColourView> view;  // of pictures; null: sRGB
     std::vector<std::string> warnings;
 
     std::size_t bands() const { return scene.desc().water.bands_nm.size(); }
     /// The lamp of this name; none if there is none.
     std::optional<std::size_t> find_lamp(std::string_view name) const;
-    /// What the three planes of a lamp's image are multiplied by when its brightness per band is
-    /// `brightness` instead of 1: the bands where colour is plain, else the brightest band thrice.
+    /// The factors on the three planes of a lamp's image if its brightness per band is `brightness`
+    /// instead of 1: the bands where colour is plain, else the brightest band thrice.
     std::array<double, 3> colour_scale(const Spectrum& brightness) const;
 };
 
@@ -90,7 +90,7 @@ class SceneChanges {
     const SceneText& text() const { return text_; }
     const std::shared_ptr<const EditedScene>& scene() const { return scene_; }
     const std::vector<std::string>& off() const { return off_; }
-    /// What was changed: "lamps.left.position", or a lamp as a whole: "lamps.left".
+    /// The paths that were changed: "lamps.left.position", or a lamp as a whole: "lamps.left".
     const std::set<std::string>& touched() const { return touched_; }
 
   private:

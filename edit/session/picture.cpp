@@ -36,7 +36,7 @@ std::string_view layer_name(Layer layer) {
 // left to the addition of floats where halves are subnormal, and to that of integers elsewhere.
 std::uint16_t half_bits(float value) {
     constexpr std::uint32_t k_normal = 0x38800000U;  // 2^-14, the least normal half
-    constexpr float k_subnormal = 0.5F;              // whose last bit is worth 2^-24
+    constexpr float k_subnormal = 0.5F;              // whose last bit is 2^-24
     const std::uint32_t bits = std::bit_cast<std::uint32_t>(value);
     const std::uint32_t magnitude = bits & 0x7fffffffU;
     const std::uint32_t subnormal =
@@ -114,7 +114,7 @@ class PlaneWriter {
             append(values_.data(), sizeof(float) * values_.size());
             return;
         }
-        // What is not finite cannot be scaled either, and is shown as 0.
+        // Values that are not finite cannot be scaled, and are shown as 0.
         halves_.resize(values_.size());
         const float scale = 1 / factor;
         std::ranges::transform(values_, halves_.begin(), [scale](float value) {
@@ -199,7 +199,7 @@ std::string picture_bytes(const Picture& picture, SampleType type) {
 
 namespace {
 
-// What the light of a lamp that was rendered with the brightness `rendered` is multiplied by.
+// The factor on the light of a lamp that was rendered with the brightness `rendered`.
 Spectrum gain_of(const EditedLamp& lamp, const Spectrum& rendered, std::size_t bands) {
     if (!lamp.on) return {};
     return per_band(bands, [&](std::size_t b) {

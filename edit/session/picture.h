@@ -15,9 +15,8 @@
 
 namespace uw {
 
-/// The steps in which a picture gets better. The first is there only where a scene is rendered with
-/// all light, before any other picture of it: the light that is scattered once, which is known in a
-/// tenth of the time.
+/// The steps in which a picture is refined. The first exists only for a scene that is rendered with
+/// all light, before any other picture of it: single scattering, which takes a tenth of the time.
 enum class PictureQuality { first, small, draft, full_draft, final };
 inline constexpr std::size_t k_picture_qualities = 5;
 
@@ -27,7 +26,7 @@ std::string_view name_of(PictureQuality quality);
 /// The size of a step's picture [pixels] of a scene of `width` x `height`.
 std::pair<int, int> picture_size(PictureQuality quality, int width, int height);
 
-/// What one lamp, or what none of them, contributes to a picture.
+/// The contribution of one lamp, or of light that comes from no lamp, to a picture.
 struct LightLayers {
     std::string key;  // EditedLamp::key
     Film film;
@@ -42,7 +41,7 @@ struct Picture {
     int width = 0, height = 0;
     std::shared_ptr<const EditedScene> scene;               // the one that it was made for
     std::vector<std::shared_ptr<const LightLayers>> lamps;  // in the order of the scene's
-    std::shared_ptr<const LightLayers> unlit;  // what emits light by itself, depth and albedo
+    std::shared_ptr<const LightLayers> unlit;               // emission, depth and albedo
 };
 
 /// How values are sent: as IEEE 754 halves, times a power of two for each plane, or singles.
@@ -51,7 +50,8 @@ enum class SampleType { f16, f32 };
 /// The planes of a picture as bytes for the page, docs/edit-api.md.
 std::string picture_bytes(const Picture& picture, SampleType type);
 
-/// Whether a picture of one scene serves the other: they differ in names and brightness at most.
+/// Whether a picture of one scene is valid for the other: they differ at most in names and
+/// brightness.
 bool is_same_picture(const EditedScene& a, const EditedScene& b);
 
 /// The layers of a picture with its lamps as bright as they are in `now`, off where they are off.

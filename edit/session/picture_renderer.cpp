@@ -70,7 +70,7 @@ ImageScene scene_of_part(const EditedScene& edited, PictureQuality quality,
     });
 }
 
-// What a part of a picture adds to it by light paths, in units that all parts of it share.
+// The contribution of a part of a picture by light paths, in units common to all parts.
 // `brightness`: of its lamp now, to which it is linear; null: it has none.
 double path_light(const LightLayers& layers, const Spectrum* brightness) {
     if (!layers.plan.has(Layer::multiple)) return 0;
@@ -216,7 +216,7 @@ bool PictureRenderer::is_known(const EditedScene& scene, PictureQuality quality)
            });
 }
 
-// Whether a picture of this quality is worth its time on the way to the final one.
+// Whether a picture of this quality is rendered before the final one.
 bool PictureRenderer::is_step(const EditedScene& scene, PictureQuality quality) const {
     const auto size_of = [&](PictureQuality other) {
         const CameraDesc& camera = scene.scene.desc().camera;
@@ -317,7 +317,7 @@ void PictureRenderer::publish(const std::shared_ptr<const EditedScene>& scene,
     made->height = made->unlit->film.height();
     {
         const std::lock_guard lock(mutex_);
-        // The same light is the same picture, whatever its lamps are called now.
+        // The same light gives the same picture, whatever the current names of lamps.
         const bool is_same =
             picture_ && picture_->lamps == made->lamps && picture_->unlit == made->unlit;
         made->number = is_same ? last_number_ : ++last_number_;

@@ -15,15 +15,15 @@
 
 namespace uw {
 
-/// Whom to tell of pictures; called on the rendering thread.
+/// Callbacks about pictures; called on the rendering thread.
 struct PictureCallbacks {
     std::function<void(const Picture& picture)> done;
     std::function<void(PictureQuality quality, double fraction)> progress;
     std::function<void(const std::string& message)> failed;
     /// Called after the first picture of a scene whose surroundings are new.
     std::function<void(const Renderer& renderer)> assembled;
-    /// Called before the final picture of a scene: what its light lacks (left_out_note); empty
-    /// where that is little, or nothing.
+    /// Called before the final picture of a scene, with a note on the light that it leaves out
+    /// (left_out_note); empty if that is little or nothing.
     std::function<void(const EditedScene& scene, const std::string& note)> light_left_out;
 };
 
@@ -31,8 +31,8 @@ struct PictureCallbacks {
 /// of each lamp by itself, so that lamps which have not changed are not rendered again, and a
 /// change of brightness or name renders nothing.
 ///
-/// A change ends what is being rendered at once, except the smallest pictures: while a lamp is
-/// dragged, each of those is finished, or none ever would be.
+/// A change cancels the current rendering at once, except that of the smallest pictures: while a
+/// lamp is dragged, each of those is finished, as otherwise none ever would be.
 class PictureRenderer {
   public:
     explicit PictureRenderer(PictureCallbacks callbacks);
@@ -77,7 +77,7 @@ class PictureRenderer {
     std::atomic<std::size_t> rendered_ = 0;
     std::atomic<PictureQuality> quality_ = PictureQuality::small;  // being rendered
 
-    // What follows belongs to the thread alone.
+    // The following members are used by the thread only.
     Renderer renderer_;
     std::string surrounding_;  // of what is known
     bool is_announced_ = false;

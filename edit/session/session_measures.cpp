@@ -66,7 +66,7 @@ Json lamp_place_json(const LampDesc& lamp) {
             {"direction", vector_json(lamp.direction)}};
 }
 
-// What a window asks of the search for a lamp's place (docs/edit-api.md). Throws UsageError where
+// Reads a window's request to search a lamp's position (docs/edit-api.md). Throws UsageError where
 // the request is malformed, makes no sense, or names lamps that are not in `scene`.
 SuggestRequest suggest_request(const Json& request, const ImageScene& scene) {
     SuggestRequest wanted;
@@ -123,7 +123,7 @@ Json target_numbers_json(const TargetNumbers& numbers) {
             {"irradiance", number_json(numbers.irradiance)}};
 }
 
-// A place that was tried: where it is, what it is worth, and its numbers.
+// A position that was tried, its objective, and its numbers.
 Json suggest_point_json(const SuggestPoint& point) {
     return {{"position", point_json(point.position)},
             {"value", number_json(point.value)},
@@ -131,8 +131,8 @@ Json suggest_point_json(const SuggestPoint& point) {
             {"numbers", target_numbers_json(point.numbers)}};
 }
 
-// What the search found: the map of the objective, the places before and best, and the lamps
-// there.
+// The result of the search: the map of the objective, the previous and the best position, and the
+// lamps there.
 Json suggestion_json(const Suggestion& found) {
     Json map = Json::array();
     for (const SuggestPoint& point : found.map)

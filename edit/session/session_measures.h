@@ -15,7 +15,7 @@
 
 namespace uw {
 
-/// What a window asks of the numbers of the picture.
+/// A window's request for the numbers of the picture.
 struct NumbersRequest {
     std::optional<PixelWindow> part;  // of the full image; none: the whole image
     double ratio = 1;                 // of PictureNumbers::fraction_above
@@ -33,9 +33,9 @@ class SessionMeasures {
     SessionMeasures(SessionMeasures&&) = delete;
     SessionMeasures& operator=(SessionMeasures&&) = delete;
 
-    /// The numbers of the newest picture, and what a target at 0.5 to 10 m looks like, as
-    /// docs/edit-api.md says. Throws UsageError for a part outside the image, ConflictError before
-    /// the first picture and, with curves, if a newer request has come.
+    /// The numbers of the newest picture, and those of a target at 0.5 to 10 m (docs/edit-api.md).
+    /// Throws UsageError for a part outside the image, ConflictError before the first picture and,
+    /// with curves, if a newer request has come.
     Json numbers(const NumbersRequest& request);
     /// All of that as CSV.
     std::string numbers_csv(const NumbersRequest& request);
@@ -45,7 +45,7 @@ class SessionMeasures {
     /// ViewTable of the scene's view. Throws ConflictError if there is none.
     std::string view_table();
 
-    /// Begins a search, ends one under way; events tell of it. Throws UsageError.
+    /// Starts a search and cancels a running one; events report it. Throws UsageError.
     Json suggest(const Json& request);
     void cancel_suggest();
 

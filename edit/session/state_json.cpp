@@ -317,7 +317,7 @@ Json extent_json(const std::optional<LampExtentDesc>& extent) {
             {"samples", extent->samples}};
 }
 
-// What a sun has beside a lamp, by its keys in scene files.
+// The additional members of a sun, by its keys in scene files.
 Json sun_json(const std::optional<SunDesc>& sun) {
     if (!sun) return nullptr;
     return {{"angle", sun->angle}, {"samples", sun->samples}};
@@ -508,7 +508,7 @@ Json moment_json(const ImageScene& scene) {
             {"time", *scene.time()}};
 }
 
-// What `uwvdb render` shows of the scene and the editor's picture does not: one sentence each.
+// What `uwvdb render` renders and the editor's picture leaves out: one sentence each.
 Json not_shown_json(const EditedScene& edited) {
     const SceneDesc &desc = edited.scene.desc(), &whole = edited.scene.whole();
     Json sentences = Json::array();
@@ -530,7 +530,7 @@ Json not_shown_json(const EditedScene& edited) {
     return sentences;
 }
 
-// What the picture is seen through, and how its table (ViewTable) is looked up.
+// The view of the picture, and how its table (ViewTable) is looked up.
 Json view_json(const std::shared_ptr<const ColourView>& view) {
     if (!view) return nullptr;
     return {{"name", view->name},

@@ -25,7 +25,7 @@ struct OutlineSegment {
 std::vector<OutlineSegment> scene_outlines(const std::vector<GeometryDesc>& geometry,
                                            std::size_t most = 20000);
 
-/// What is known of a scene once it has been assembled.
+/// Data about a scene once it has been assembled.
 struct SceneShapes {
     std::vector<OutlineSegment> outlines;
     std::vector<Bounds> volumes;  // world; one per volume, perhaps empty

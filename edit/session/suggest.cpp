@@ -112,7 +112,7 @@ class Search {
                                  scene_.desc().camera.world_from_camera);
     }
 
-    /// Judges the light as it is in `light_`.
+    /// Evaluates the objective for the light in `light_`.
     SuggestPoint point(const Point3& position) const {
         SuggestPoint result;
         result.position = position;

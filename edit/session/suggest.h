@@ -12,9 +12,9 @@
 
 namespace uw {
 
-/// What is sought: where a lamp is to be for the best view of a target at a chosen distance.
+/// A search for the position of a lamp that gives the best view of a target at a chosen distance.
 struct SuggestRequest {
-    /// What is best: the target's contrast, the ratio of its signal to the backscatter, or the
+    /// The objective: the target's contrast, the ratio of its signal to the backscatter, or the
     /// light on it.
     enum class Objective { contrast, signal_to_backscatter, irradiance };
     /// Whether the lamp keeps its direction, or is always turned towards the target's centre.
@@ -22,8 +22,8 @@ struct SuggestRequest {
 
     std::size_t lamp = 0;                // index in the scene
     std::optional<std::size_t> partner;  // a lamp kept at the mirrored place, left for right
-    /// Where the lamp may be, in its own frame: on the straight line between the two [m], or, in a
-    /// box, between the two along each axis.
+    /// The permitted positions of the lamp, in its own frame: on the straight line between the two
+    /// [m], or, in a box, between the two along each axis.
     Point3 from, to;
     bool in_box = false;
     double distance = 3;  // of the target [m]
@@ -32,8 +32,8 @@ struct SuggestRequest {
     /// Positions whose target has less than this fraction of the light that falls on it now are
     /// left out; 0: none.
     double min_light = 0;
-    /// The most positions that are tried, 12..10000: two thirds of them on a grid, the rest about
-    /// the best.
+    /// The greatest number of positions to try, 12..10000: two thirds of them on a grid, the rest
+    /// about the best.
     std::size_t samples = 150;
 };
 
@@ -45,7 +45,7 @@ struct SuggestPoint {
     bool allowed = true;  // by SuggestRequest::min_light
 };
 
-/// What was found.
+/// The result of a search.
 struct Suggestion {
     std::array<std::size_t, 3> counts{};  // of the grid along x, y, z; a line has its own, 1, 1
     std::vector<SuggestPoint> map;        // of the grid, x fastest

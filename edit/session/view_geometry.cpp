@@ -22,7 +22,7 @@ ImagePoint middle_of(const Camera& camera) {
     return {0.5 * camera.width(), 0.5 * camera.height()};
 }
 
-// Where the line from the image's centre in this direction leaves the image.
+// The point at which the line from the image's centre in this direction leaves the image.
 ImagePoint rim_point(const Camera& camera, double dx, double dy) {
     const ImagePoint middle = middle_of(camera);
     if (dx == 0 && dy == 0) dy = 1;
@@ -38,7 +38,7 @@ Ray ray_at(const Camera& camera, const ImagePoint& pixel) {
     return *ray;
 }
 
-// Where the ray is `distance` from `centre`, the farther along if there are two such places; NaN if
+// The point of the ray at `distance` from `centre`, the farther one if there are two; NaN if
 // there is none.
 double farther_crossing(const Ray& ray, const Point3& centre, double distance) {
     const Vector3 to_origin = ray.origin - centre;
