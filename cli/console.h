@@ -44,8 +44,7 @@ class TextFiles {
 };
 
 /// Rejects outputs that cannot be written, or that would replace a file that has been read: to be
-/// called after the inputs are known and before the work. Empty names are ignored. Throws
-/// IoError.
+/// called after the inputs are known and before the work. Empty names are ignored. Throws IoError.
 void check_outputs(std::initializer_list<std::filesystem::path> outputs);
 
 /// Writes `content` to the file of option -o, or to standard output if its name is empty. Throws

@@ -13,9 +13,9 @@
 
 namespace uw {
 
-/// The facts about a scene for a data card: water, lamps, cameras, contents and rendering.
-/// `first` is the resolved scene of the set's first view, and `left_out` what some of its views
-/// leave out (estimate_light_left_out).
+/// The facts about a scene for a data card: water, lamps, cameras, contents and rendering. `first`
+/// is the resolved scene of the set's first view, and `left_out` what some of its views leave out
+/// (estimate_light_left_out).
 Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out);
 
 /// One line on the light that the images leave out, for the messages of a run; empty if it is

@@ -102,8 +102,8 @@ std::string dataset_text(const DatasetFile& file);
 /// UsageError for a folder with other files and no set; InputError for one that is damaged.
 std::optional<DatasetFile> read_dataset_file(const std::filesystem::path& folder);
 
-/// Throws UsageError of one line, what differs and how to fix it, unless `there` is the set that
-/// is wanted.
+/// Throws UsageError of one line, what differs and how to fix it, unless `there` is the set that is
+/// wanted.
 void check_same_set(const std::filesystem::path& folder, const DatasetDefinition& there,
                     const DatasetDefinition& wanted);
 

@@ -32,9 +32,9 @@ struct ModelError {
 ModelError model_error(const CameraDesc& model, std::span<const SeenPixel> seen);
 
 /// Fits a camera without a port, at the same position, to the images of these points in `camera`
-/// through its port (least squares): COLMAP's OPENCV_FISHEYE of a fisheye lens, else
-/// OPENCV, whose k3 is fitted as well if the lens has more than two radial coefficients. Throws
-/// InputError if the points do not determine it.
+/// through its port (least squares): COLMAP's OPENCV_FISHEYE of a fisheye lens, else OPENCV, whose
+/// k3 is fitted as well if the lens has more than two radial coefficients. Throws InputError if the
+/// points do not determine it.
 CameraDesc fit_pinhole(const CameraDesc& camera, std::span<const SeenPixel> seen);
 
 /// The model without a port of a camera with one, for the surfaces that are visible in a draw's

@@ -83,9 +83,9 @@ void write_picture_of(const ViewImages& images, const Film& film, double exposur
 void write_image(const ViewImages& images, SetFiles& files, const std::string& role,
                  const std::string& path);
 
-/// Writes the surfaces' distance along the camera's axis as a PNG of 16 bits: times `scale`
-/// [1/m], rounded; 0 where there is no surface or it is beyond DatasetDefinition::depth_far.
-/// Throws InputError for a distance that does not fit into 16 bits.
+/// Writes the surfaces' distance along the camera's axis as a PNG of 16 bits: times `scale` [1/m],
+/// rounded; 0 where there is no surface or it is beyond DatasetDefinition::depth_far. Throws
+/// InputError for a distance that does not fit into 16 bits.
 void write_depth(const ViewImages& images, SetFiles& files, const std::string& role,
                  const std::string& path, double scale);
 

@@ -24,8 +24,7 @@ namespace uw {
 struct ObservedPicture {
     std::filesystem::path file;
     ImageChoice choice;
-    /// Replaces the scene's, before the `transform` of its camera's trajectory, if it has
-    /// one.
+    /// Replaces the scene's, before the `transform` of its camera's trajectory, if it has one.
     std::optional<Pose> world_from_camera{};
 };
 

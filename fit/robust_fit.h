@@ -88,8 +88,8 @@ struct FoundValue {
     double size = 1;
 };
 
-/// Unknowns of which only a combination is determined: moved together by these components of
-/// their sizes, they leave the observations unchanged.
+/// Unknowns of which only a combination is determined: moved together by these components of their
+/// sizes, they leave the observations unchanged.
 struct FreeDirection {
     std::vector<std::size_t> unknowns;  // most affected first
     std::vector<double> components;     // likewise, of unit length

@@ -38,11 +38,11 @@ class SceneUnknowns {
   public:
     /// `keys` are paths as of --set, "water.absorption" or "camera.port.distance", where * stands
     /// for every entry: "lamps.*.position". A list of numbers is an unknown for each; a `normal` or
-    /// `direction` is two, by which it is tilted [deg]. The natural limits of numbers, such
-    /// as 0, are found by trying values with the scene's reader. `file` is the scene's. Two keys
-    /// are no scene's: "exposure", one of each of the `pictures`, and "response"; both begin at 1.
-    /// Throws UsageError for keys that the scene does not have or that hold no numbers, for these
-    /// two without pictures, and as load_scene_tree.
+    /// `direction` is two, by which it is tilted [deg]. The natural limits of numbers, such as 0,
+    /// are found by trying values with the scene's reader. `file` is the scene's. Two keys are no
+    /// scene's: "exposure", one of each of the `pictures`, and "response"; both begin at 1. Throws
+    /// UsageError for keys that the scene does not have or that hold no numbers, for these two
+    /// without pictures, and as load_scene_tree.
     SceneUnknowns(ConfigNode tree, std::filesystem::path file, std::span<const std::string> keys,
                   std::span<const std::string> pictures = {});
 

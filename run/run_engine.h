@@ -83,8 +83,8 @@ struct ImageWork {
     std::function<void()> written{};
 };
 
-/// The command whose images a job renders. The hooks are called on the thread that runs the
-/// job, in the order below for each image, by its place in the job; what they throw ends the run.
+/// The command whose images a job renders. The hooks are called on the thread that runs the job, in
+/// the order below for each image, by its place in the job; what they throw ends the run.
 class RunClient {
   public:
     RunClient() = default;

@@ -190,8 +190,7 @@ class SceneTrial {
         scatter(method, trial, trial.renderer.make_transport());
     }
 
-    // The error of a method itself if its image still changes this much; none if it has
-    // converged.
+    // The error of a method itself if its image still changes this much; none if it has converged.
     static double own_error(double change, double tolerance) {
         return change > tolerance ? change : 0;
     }

@@ -14,8 +14,8 @@ namespace uw {
 /// What a fit found, for people and programs. Refers to both, which outlive it.
 class FitReport {
   public:
-    /// `pictures`: the observations, if they are of pictures; else null. `poses`: of the images,
-    /// if they were found. `questions`: doubts about the input, in sentences.
+    /// `pictures`: the observations, if they are of pictures; else null. `poses`: of the images, if
+    /// they were found. `questions`: doubts about the input, in sentences.
     FitReport(const Observations& observations, const PictureResiduals* pictures,
               const FitResult& result, std::vector<FoundPose> poses = {},
               std::vector<std::string> questions = {});

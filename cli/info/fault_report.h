@@ -17,9 +17,9 @@ struct FaultReportOf {
 };
 
 /// Prints the versions of program, libraries and system, the facts of the machine that matter, the
-/// text of the scene, the names and sizes of the files that it is read from without their
-/// contents, and the log, each as soon as it is known, so that all of it up to a crash is printed.
-/// The user's folder is "~". Throws IoError if nothing can be printed.
+/// text of the scene, the names and sizes of the files that it is read from without their contents,
+/// and the log, each as soon as it is known, so that all of it up to a crash is printed. The user's
+/// folder is "~". Throws IoError if nothing can be printed.
 void print_fault_report(const FaultReportOf& of);
 
 }  // namespace uw

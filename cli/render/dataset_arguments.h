@@ -20,8 +20,8 @@ struct ShardArgument {
 
 /// `uwvdb dataset` as typed.
 struct DatasetArguments {
-    /// The arguments shared with `uwvdb render`: scene, overrides, frames, size, quality,
-    /// samples, threads. `output` is the set's folder, `layers` those of EXR and NumPy.
+    /// The arguments shared with `uwvdb render`: scene, overrides, frames, size, quality, samples,
+    /// threads. `output` is the set's folder, `layers` those of EXR and NumPy.
     RenderArguments image;
     std::string frames;                  // --frames as typed
     std::vector<std::string> formats;    // --format; empty: png and depth

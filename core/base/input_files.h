@@ -78,13 +78,12 @@ void remember_input(const std::filesystem::path& file);
 enum class NamedBy { scene, user };
 
 /// Admits an input. All code that opens a file for the user, or has a library open it, calls this
-/// before, or calls open_input. It checks that the file is a regular one,
-/// since a pipe would wait and a device never end, and that it lies where inputs may
-/// (confine_inputs), and remembers it (remember_input). Messages begin with `subject`
-/// ("plume.yaml", or the scene entry that names the file, followed by the file) and call what was
-/// expected `noun`
-/// ("scene", "IES file"). Throws IoError if there is no such file, or it is no regular one;
-/// InputError if it lies elsewhere. Thread safe.
+/// before, or calls open_input. It checks that the file is a regular one, since a pipe would wait
+/// and a device never end, and that it lies where inputs may (confine_inputs), and remembers it
+/// (remember_input). Messages begin with `subject` ("plume.yaml", or the scene entry that names the
+/// file, followed by the file) and call what was expected `noun` ("scene", "IES file"). Throws
+/// IoError if there is no such file, or it is no regular one; InputError if it lies elsewhere.
+/// Thread safe.
 void admit_input(const std::filesystem::path& file, const std::string& subject,
                  std::string_view noun, NamedBy named_by = NamedBy::scene);
 

@@ -38,8 +38,8 @@ class PathRandom {
 double draw_random(std::uint64_t seed, std::string_view key, std::size_t component, int variation);
 
 /// Draws from the Poisson distribution with this mean, exactly rather than by a normal
-/// approximation. Inversion below a mean of 30, above it the rejection method PTRS
-/// (Hörmann 1993, "The transformed rejection method for generating Poisson random variables").
+/// approximation. Inversion below a mean of 30, above it the rejection method PTRS (Hörmann 1993,
+/// "The transformed rejection method for generating Poisson random variables").
 double poisson(double mean, PathRandom& random);
 
 /// Draws two independent standard normal numbers (Box and Muller 1958).

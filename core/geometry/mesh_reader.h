@@ -45,8 +45,8 @@ struct ClampedValues {
 };
 
 /// Clamps the attributes of the vertices and materials of a mesh, from any file, to the ranges that
-/// `mesh.h` states, in place, and adds to `clamped`. Tangents that are not finite become
-/// zero, which is none.
+/// `mesh.h` states, in place, and adds to `clamped`. Tangents that are not finite become zero,
+/// which is none.
 void clamp_values(TriangleMesh& mesh, ClampedValues& clamped);
 
 /// Reads what a glTF (.gltf, .glb), OBJ, PLY or STL file shows, in the file's coordinates: no axis

@@ -20,8 +20,8 @@ struct LightTransport {
     std::unique_ptr<const Integrator> integrator;
     std::unique_ptr<const SurfaceLighting> surfaces;
     /// What `integrator` integrates, in parts that are interpolated between pixels separately: the
-    /// light of suns that waves focus varies from pixel to pixel, all other light is smooth.
-    /// Empty: `integrator` is interpolated as a whole.
+    /// light of suns that waves focus varies from pixel to pixel, all other light is smooth. Empty:
+    /// `integrator` is interpolated as a whole.
     std::vector<std::unique_ptr<const Integrator>> parts{};
     /// Traces random paths: for all light (IntegratorKind::traces_paths), or for what the other two
     /// leave out (MultipleScatteringPass). Null unless a pass needs it.

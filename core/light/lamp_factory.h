@@ -54,8 +54,8 @@ Lamp make_lamp(const LampDesc& desc, const Sky& sky);
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Sky& sky, std::vector<Lamp>& emitters);
 
-/// Appends the mirror image of each emitter from `first` on that lies below the surface, in
-/// their order.
+/// Appends the mirror image of each emitter from `first` on that lies below the surface, in their
+/// order.
 void append_mirror_images(const WaterSurface& surface, std::size_t first,
                           std::vector<Lamp>& emitters);
 

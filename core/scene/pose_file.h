@@ -63,10 +63,10 @@ Pose placed(const Pose& pose, const TrajectoryDesc& desc);
 
 /// Reads the file of poses that `desc` names, if it names any, and makes its trajectory; poses
 /// without times are those of the frames, `fps` per second. Returns the hash of the file's text;
-/// empty for keyframes. `doubt` becomes a remark if the file's times seem not to have the unit
-/// of its format, such as frame numbers; else empty. Throws as read_pose_file
-/// does, and InputError for a start at which poses cannot be distinguished, and for poses at the
-/// same position, between which a constant speed allows no time.
+/// empty for keyframes. `doubt` becomes a remark if the file's times seem not to have the unit of
+/// its format, such as frame numbers; else empty. Throws as read_pose_file does, and InputError for
+/// a start at which poses cannot be distinguished, and for poses at the same position, between
+/// which a constant speed allows no time.
 std::string load_trajectory(TrajectoryDesc& desc, double fps, std::string& doubt);
 
 /// A time in whole nanoseconds; none after the year 2116.

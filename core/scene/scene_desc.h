@@ -53,10 +53,10 @@ struct SceneDesc {
     std::vector<std::string> warnings;  ///< one line each
 };
 
-/// Reads a scene file (version 1, docs/scene-file.md) and checks all of it.
-/// `overrides` are "key.path=value" as given to --set, applied in order before checking.
-/// Throws InputError with one line "file:line:column: key path: what; hint", IoError if the file
-/// cannot be read, UsageError for an override that is not of that form.
+/// Reads a scene file (version 1, docs/scene-file.md) and checks all of it. `overrides` are
+/// "key.path=value" as given to --set, applied in order before checking. Throws InputError with one
+/// line "file:line:column: key path: what; hint", IoError if the file cannot be read, UsageError
+/// for an override that is not of that form.
 SceneDesc read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
 /// The same for a scene whose text is in memory, such as one that is being edited: `file`, by which

@@ -108,9 +108,8 @@ std::vector<DrawnValue> draw(const VariationsDesc& variations, int variation);
 std::string values_text(const std::vector<DrawnValue>& values);
 
 /// The section `variations` of a scene's tree; none if it has none. `file` is the scene's, to whose
-/// folder the names of tables are relative. The keys that are drawn are checked
-/// when they are set. Throws InputError "file:line:column: key path: what; hint", and as
-/// read_csv_file.
+/// folder the names of tables are relative. The keys that are drawn are checked when they are set.
+/// Throws InputError "file:line:column: key path: what; hint", and as read_csv_file.
 std::optional<VariationsDesc> read_variations(const ConfigNode& scene,
                                               const std::filesystem::path& file);
 }  // namespace uw

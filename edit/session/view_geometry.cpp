@@ -38,8 +38,8 @@ Ray ray_at(const Camera& camera, const ImagePoint& pixel) {
     return *ray;
 }
 
-// The point of the ray at `distance` from `centre`, the farther one if there are two; NaN if
-// there is none.
+// The point of the ray at `distance` from `centre`, the farther one if there are two; NaN if there
+// is none.
 double farther_crossing(const Ray& ray, const Point3& centre, double distance) {
     const Vector3 to_origin = ray.origin - centre;
     const double b = glm::dot(to_origin, ray.direction);

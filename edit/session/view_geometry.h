@@ -48,8 +48,7 @@ Point3 dragged_point(const Camera& camera, const ImagePoint& pixel, const Point3
 /// not visible, the point lies on the straight line to it. Throws as dragged_point.
 Point3 point_at_distance(const Camera& camera, const Point3& from, double distance);
 /// The direction, unit, of a lamp whose axis' handle is imaged at `pixel`: of two, the one closer
-/// to the present one; if the handle cannot reach
-/// it, the direction towards the pixel's ray.
+/// to the present one; if the handle cannot reach it, the direction towards the pixel's ray.
 Vector3 aimed_direction(const Camera& camera, const ImagePoint& pixel, const PlacedLamp& lamp);
 
 /// The points at 1 m in the water from the port of the image's corners, clockwise from the top

@@ -11,8 +11,7 @@
 /// Dense arrays of all values in a box, as used by numerical software.
 namespace uw {
 
-/// A view of values in memory: value (i, j, k) is data[i * steps[0] + j * steps[1] + k *
-/// steps[2]].
+/// A view of values in memory: value (i, j, k) is data[i * steps[0] + j * steps[1] + k * steps[2]].
 struct ArrayView {
     const float* data = nullptr;
     std::array<std::size_t, 3> size{};

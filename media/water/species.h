@@ -26,11 +26,11 @@ struct SpeciesOptics {
 };
 
 /// Averages Lorenz-Mie scattering over a species' sizes, at `wavelength_nm` in vacuum, in water of
-/// index `n_water`. Sizes are added until scattering and absorption are accurate to 1e-4
-/// and the phase function to 2 % (root mean square over its angles), or there are 2048. Results are
-/// kept, in memory and in the cache of species (species_cache.h). `progress` is called if they have
-/// to be computed. Throws InputError at the species' place in the scene for invalid tables, IoError
-/// if they cannot be read.
+/// index `n_water`. Sizes are added until scattering and absorption are accurate to 1e-4 and the
+/// phase function to 2 % (root mean square over its angles), or there are 2048. Results are kept,
+/// in memory and in the cache of species (species_cache.h). `progress` is called if they have to be
+/// computed. Throws InputError at the species' place in the scene for invalid tables, IoError if
+/// they cannot be read.
 SpeciesOptics species_optics(const SpeciesDesc& species, double wavelength_nm, double n_water,
                              const ProgressCallback& progress = {});
 
