@@ -29,11 +29,11 @@ namespace {
 
 /// Names for a message: the first few of them.
 std::string some_names(const std::vector<std::string>& names) {
-    constexpr std::size_t k_most = 8;
+    constexpr std::size_t k_max_listed = 8;
     std::vector<std::string> some;
-    for (std::size_t i = 0; i < std::min(names.size(), k_most); ++i)
+    for (std::size_t i = 0; i < std::min(names.size(), k_max_listed); ++i)
         some.push_back(printable(names[i], 30));
-    return fmt::format("{}{}", fmt::join(some, ", "), names.size() > k_most ? ", ..." : "");
+    return fmt::format("{}{}", fmt::join(some, ", "), names.size() > k_max_listed ? ", ..." : "");
 }
 
 }  // namespace

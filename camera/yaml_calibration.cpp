@@ -18,9 +18,9 @@ std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_vi
     const ConfigNode* const rows = value.node().find("rows");
     const ConfigNode* const cols = value.node().find("cols");
     if (rows == nullptr || cols == nullptr) return numbers;
-    constexpr int k_most = 64;
-    const int count = ConfigValue(*rows, value.path() + ".rows").integer(0, k_most, hint) *
-                      ConfigValue(*cols, value.path() + ".cols").integer(0, k_most, hint);
+    constexpr int k_max_rows = 64;
+    const int count = ConfigValue(*rows, value.path() + ".rows").integer(0, k_max_rows, hint) *
+                      ConfigValue(*cols, value.path() + ".cols").integer(0, k_max_rows, hint);
     if (static_cast<std::size_t>(count) != numbers.size())
         value.fail(fmt::format("rows x cols is {}, but data has {} numbers; {}", count,
                                numbers.size(), hint));
@@ -148,8 +148,8 @@ void read_coefficients(const ConfigValue& value, Model model, Calibration& resul
                                                 : what,
                                        d[i], hint));
     };
-    constexpr std::size_t k_most = 14;
-    if (count > k_most) refuse("0, 4, 5, 8, 12 or 14");
+    constexpr std::size_t k_max_coefficients = 14;
+    if (count > k_max_coefficients) refuse("0, 4, 5, 8, 12 or 14");
     if (model == Model::equidistant) {
         if (count < 4) refuse("4");
         refuse_beyond(4, "a coefficient beyond k1 to k4", "calibrate with these four");
@@ -160,7 +160,7 @@ void read_coefficients(const ConfigValue& value, Model model, Calibration& resul
     if (is_plumb_bob && count != 0 && count < 4) refuse("4 or 5");
     if (model == Model::rational && count < 8) refuse("8");
     if (!is_plumb_bob && model != Model::rational && count != 0 && count != 4 && count != 5 &&
-        count != 8 && count != 12 && count != k_most)
+        count != 8 && count != 12 && count != k_max_coefficients)
         refuse("0, 4, 5, 8, 12 or 14");
     if (is_plumb_bob)
         refuse_beyond(5, "a sixth coefficient or more",

@@ -218,8 +218,8 @@ struct DataLimit {
         const double most =
             static_cast<double>(data_bytes()) + (1 - k_kernel_fraction) * static_cast<double>(left);
         // More than that is no limit.
-        constexpr double k_largest = 0x1p62;
-        ours = most < k_largest ? std::min(before, static_cast<rlim_t>(most)) : before;
+        constexpr double k_max_limit = 0x1p62;
+        ours = most < k_max_limit ? std::min(before, static_cast<rlim_t>(most)) : before;
         if (lifted == 0) set(ours);
     }
 };

@@ -85,9 +85,10 @@ namespace {
 const std::vector<float>& linear_of_16_bits() {
     static const std::vector<float> table = [] {
         std::vector<float> values;
-        constexpr int k_most = 65535;
-        for (int i = 0; i <= k_most; ++i)
-            values.push_back(static_cast<float>(linear_from_srgb(static_cast<double>(i) / k_most)));
+        constexpr int k_max_code = 65535;
+        for (int i = 0; i <= k_max_code; ++i)
+            values.push_back(
+                static_cast<float>(linear_from_srgb(static_cast<double>(i) / k_max_code)));
         return values;
     }();
     return table;

@@ -216,7 +216,7 @@ void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, d
     };
     constexpr double k_piece = 0.5,
                      k_deep = 20;  // optical depths; beyond the latter e^-tau is negligible
-    constexpr int k_most = 64;
+    constexpr int k_max_pieces = 64;
     for (std::size_t knot = 0; knot + 1 < light.s.size(); ++knot) {
         if (light.empty_between(knot)) continue;
         if (!columns) {
@@ -232,7 +232,8 @@ void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, d
         const int pieces =
             before.begin > k_deep
                 ? 1
-                : std::clamp(static_cast<int>((behind.end - before.end) / k_piece) + 1, 1, k_most);
+                : std::clamp(static_cast<int>((behind.end - before.end) / k_piece) + 1, 1,
+                             k_max_pieces);
         for (int piece = 0; piece < pieces; ++piece)
             for (const QuadratureNode& node : gauss_legendre(2)) {
                 const double t = (piece + node.position) / pieces, s = begin + t * length;

@@ -25,11 +25,12 @@ namespace {
 
 // The table covers psi = 1.2e-7, below which none of our phase functions varies by more than 2 %,
 // to pi - 1e-4.
-constexpr double k_least = 0x1p-24, k_most = 0x1p14;
+constexpr double k_min_half_tangent = 0x1p-24, k_max_half_tangent = 0x1p14;
 constexpr int k_cell_bits = 6;  // of the mantissa: 64 cells per octave
 constexpr int k_offset_bits = 52 - k_cell_bits;
-constexpr std::uint64_t k_first = std::bit_cast<std::uint64_t>(k_least) >> k_offset_bits;
-constexpr std::size_t k_cells = (std::bit_cast<std::uint64_t>(k_most) >> k_offset_bits) - k_first;
+constexpr std::uint64_t k_first = std::bit_cast<std::uint64_t>(k_min_half_tangent) >> k_offset_bits;
+constexpr std::size_t k_cells =
+    (std::bit_cast<std::uint64_t>(k_max_half_tangent) >> k_offset_bits) - k_first;
 
 double angle(double half_tangent) {
     return 2 * std::atan(half_tangent);
@@ -62,10 +63,10 @@ UWVDB_VECTOR_CLONES void PhaseTable::evaluate(std::span<const double> half_tange
     if (phases_ == 0) return;  // non-scattering water has no table
     constexpr std::uint64_t k_offset_mask = (std::uint64_t{1} << k_offset_bits) - 1;
     constexpr double k_offset_unit = 1.0 / (std::uint64_t{1} << k_offset_bits);
-    const double largest = std::nextafter(k_most, 0);
+    const double largest = std::nextafter(k_max_half_tangent, 0);
     const std::size_t count = half_tangent.size();
     for (std::size_t i = 0; i < count; ++i) {
-        const double h = std::clamp(half_tangent[i], k_least, largest);
+        const double h = std::clamp(half_tangent[i], k_min_half_tangent, largest);
         const auto bits = std::bit_cast<std::uint64_t>(h);
         const double t = static_cast<double>(bits & k_offset_mask) * k_offset_unit;
         const double* c = &coefficients_[((bits >> k_offset_bits) - k_first) * phases_ * 3];

@@ -71,7 +71,7 @@ class IesText {
                              what));
         const std::string_view token = rest_.substr(0, rest_.find_first_of(" \t\r\n,\x1A"));
         double value = 0;
-        if (parse_number(token, value) != NumberText::number || std::abs(value) > k_largest)
+        if (parse_number(token, value) != NumberText::number || std::abs(value) > k_max_magnitude)
             fail(fmt::format("expected a number for {}, found '{}'; write numbers like 12.5", what,
                              printable(token)));
         rest_.remove_prefix(token.size());
@@ -108,7 +108,7 @@ class IesText {
     }
 
   private:
-    static constexpr double k_largest = 1e12;
+    static constexpr double k_max_magnitude = 1e12;
 
     std::string_view rest_;
     std::string name_;

@@ -101,7 +101,7 @@ LampProfileDesc read_cosine(ConfigMap& map, const SceneContext& /*context*/) {
 LampProfileDesc read_table_profile(ConfigMap& map, const SceneContext& /*context*/) {
     constexpr auto k_hint =
         "write {type: table, angles: [0, 20, 40, 60], values: [1, 0.9, 0.4, 0]}";
-    constexpr std::size_t k_most = 1024;
+    constexpr std::size_t k_max_angles = 1024;
     TableProfileDesc profile;
     const ConfigValue angles = map.require("angles", k_hint),
                       values = map.require("values", k_hint);
@@ -111,8 +111,8 @@ LampProfileDesc read_table_profile(ConfigMap& map, const SceneContext& /*context
             entry.fail(fmt::format("must ascend from 0, found {}; {}", angle, k_hint));
         profile.angles.push_back(angle);
     }
-    if (profile.angles.size() < 2 || profile.angles.size() > k_most)
-        angles.fail(fmt::format("needs 2 to {} angles; {}", k_most, k_hint));
+    if (profile.angles.size() < 2 || profile.angles.size() > k_max_angles)
+        angles.fail(fmt::format("needs 2 to {} angles; {}", k_max_angles, k_hint));
     for (const ConfigValue& entry : values.list_of(profile.angles.size(), k_hint))
         profile.values.push_back(entry.within(
             0, 1, "give the intensity relative to the lamp's; divide by the greatest"));

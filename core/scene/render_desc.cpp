@@ -86,8 +86,8 @@ ViewDesc read_view(const ConfigValue& value, const SceneContext& context) {
 /// `fps` and `times` of `render`.
 void read_times(ConfigMap& map, RenderDesc& render) {
     if (const auto entry = map.find("fps")) {
-        constexpr double k_least = 1e-6, k_most = 1e6;
-        render.fps = entry->within(k_least, k_most, "give the frames per second, such as 25");
+        constexpr double k_min_fps = 1e-6, k_max_fps = 1e6;
+        render.fps = entry->within(k_min_fps, k_max_fps, "give the frames per second, such as 25");
     }
     if (const auto entry = map.find("times")) {
         constexpr std::array<std::pair<std::string_view, RenderDesc::Times>, 2> k_times{

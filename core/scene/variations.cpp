@@ -168,9 +168,9 @@ IntegerDistribution integer(const ConfigValue& value) {
     constexpr auto k_integer_hint = "give two whole numbers, [lowest, highest]";
     interval(value);
     const std::vector<ConfigValue> ends = value.list_of(2, k_integer_hint);
-    constexpr int k_largest = std::numeric_limits<int>::max();
-    return {ends[0].integer(-k_largest, k_largest, k_integer_hint),
-            ends[1].integer(-k_largest, k_largest, k_integer_hint)};
+    constexpr int k_max_integer = std::numeric_limits<int>::max();
+    return {ends[0].integer(-k_max_integer, k_max_integer, k_integer_hint),
+            ends[1].integer(-k_max_integer, k_max_integer, k_integer_hint)};
 }
 
 NormalDistribution normal(const ConfigValue& value, const std::optional<ConfigValue>& within) {

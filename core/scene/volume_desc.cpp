@@ -102,9 +102,9 @@ constexpr auto k_table_example = "write [[0.1, [0, 0, 0]], [1, [4, 1.5, 0.3]]]";
 
 /// Rows of a value of the grid and the light there, one number per band.
 void read_table(const ConfigValue& value, EmissionDesc& emission, const SceneContext& context) {
-    constexpr std::size_t k_most = 4096;
+    constexpr std::size_t k_max_rows = 4096;
     const std::vector<ConfigValue> rows = value.list(k_table_example);
-    if (rows.size() < 2 || rows.size() > k_most)
+    if (rows.size() < 2 || rows.size() > k_max_rows)
         value.fail(std::string("needs 2 to 4096 rows; ") + k_table_example);
     emission.per_unit.assign(context.band_count, 0.0);
     for (const ConfigValue& entry : rows) {

@@ -269,7 +269,7 @@ class SizeAverage {
         const double octaves = sizes_.last() - sizes_.first();
         const double mean = octaves > 0 ? (greatest - least) / octaves : greatest;
         constexpr double k_fewest_orders = 8;
-        return static_cast<double>(k_most) * static_cast<double>(angles_.size()) *
+        return static_cast<double>(k_max_sizes) * static_cast<double>(angles_.size()) *
                (mean + k_fewest_orders);
     }
 
@@ -297,13 +297,13 @@ class SizeAverage {
             Sums before = none(), after = none();
             add(before, sum, step);
             add(after, fine, 0.5 * step);
-            if (2 * count == k_most || agree(before, after)) return after;
+            if (2 * count == k_max_sizes || agree(before, after)) return after;
             sum = std::move(fine);
         }
     }
 
   private:
-    static constexpr std::size_t k_first = 128, k_most = 2048;
+    static constexpr std::size_t k_first = 128, k_max_sizes = 2048;
     /// To be increased with every change of the results: those of other versions are not reused.
     static constexpr int k_version = 2;
 
@@ -315,7 +315,7 @@ class SizeAverage {
             if (!tell_) return;
             const std::scoped_lock lock(mutex_);
             done_ += sizes;
-            tell_(static_cast<double>(done_) / k_most);
+            tell_(static_cast<double>(done_) / k_max_sizes);
         }
 
       private:
@@ -423,8 +423,8 @@ class KeptOptics {
         FileStamps files(files_of(species));
         SpeciesOptics optics = compute(species, wavelength_nm, n_water, progress);
         const std::scoped_lock lock(mutex_);
-        constexpr std::size_t k_most = 4096;  // of 20 kB each
-        if (entries_.size() >= k_most) entries_.clear();
+        constexpr std::size_t k_max_entries = 4096;  // of 20 kB each
+        if (entries_.size() >= k_max_entries) entries_.clear();
         entries_.push_back({species, wavelength_nm, n_water, std::move(files), optics});
         return optics;
     }
