@@ -72,7 +72,7 @@ struct RowExposure {
     static constexpr double k_always = 1e30;
 };
 
-/// How a camera moves around the time of its frame.
+/// The motion of a camera around the time of its frame.
 class CameraMotion {
   public:
     /// `world_from_camera`: poses at equal intervals over `span`, both ends included, two or more;
@@ -117,7 +117,7 @@ struct ImagePoint {
     double y = 0;
 };
 
-/// How a camera sees a point.
+/// The image of a point in a camera.
 struct Sighting {
     ImagePoint image;
     Ray ray;  // in water, world space: the one that passes through the point
@@ -170,7 +170,7 @@ class Camera final : public RaySource {
     /// A point as the lens images it.
     struct Projection {
         ImagePoint image;
-        Vector3 in_housing{0, 0, 1};  // where it comes from, camera frame
+        Vector3 in_housing{0, 0, 1};  // the direction towards it, camera frame
     };
     // The ray in the water, world space, of one in the housing, for a pose of the camera.
     std::optional<Ray> in_water(const Ray& in_housing, const Affine& world_from_camera) const;
@@ -186,7 +186,7 @@ class Camera final : public RaySource {
     std::optional<ThinLens> thin_lens_;
     Affine world_from_camera_;
     Affine camera_from_world_;
-    std::shared_ptr<const CameraMotion> motion_;  // null: it stands still
+    std::shared_ptr<const CameraMotion> motion_;  // null: it does not move
     RowExposure rows_;
 };
 

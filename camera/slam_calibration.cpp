@@ -12,8 +12,8 @@
 
 namespace uw {
 
-// Cameras in the files that programs of visual odometry and mapping are set up by. All are OpenCV's
-// lenses, and have the centre of the first pixel at (0, 0).
+// Cameras in the settings of programs for visual odometry and mapping. All have OpenCV's lenses,
+// and the centre of the first pixel at (0, 0).
 
 namespace {
 
@@ -30,13 +30,13 @@ std::vector<double> numbers_of(const ConfigValue& value, std::size_t count, std:
     return numbers_in(value.list_of(count, hint), hint);
 }
 
-/// Refuses a model of lenses that is not there, and says what is.
+/// Rejects an unknown lens model, and lists the known ones.
 [[noreturn]] void refuse_model(const ConfigValue& value, std::string_view supported) {
     value.fail(fmt::format("the camera model {} is not supported; calibrate with {}",
                            printable(value.node().scalar), supported));
 }
 
-/// Whether a key of the map begins so.
+/// Whether a key of the map has this prefix.
 bool has_key_beginning(const ConfigNode& map, std::string_view begin) {
     for (const ConfigNode::Entry& entry : map.entries)
         if (entry.key.starts_with(begin)) return true;
@@ -140,8 +140,8 @@ Calibration read_okvis(const ConfigValue& root, const std::string& camera) {
 }
 
 // ORB-SLAM's settings: keys with dots, "Camera.fx" up to ORB-SLAM2 and in the first files of
-// ORB-SLAM3, "Camera1.fx" in its later ones. Those of rectified stereo have the cameras as they
-// were, with K, D, width and height each, as LEFT and RIGHT.
+// ORB-SLAM3, "Camera1.fx" in its later ones. Those of rectified stereo have the unrectified
+// cameras, with K, D, width and height each, as LEFT and RIGHT.
 
 namespace {
 
@@ -178,7 +178,7 @@ void read_orb_lens(const ConfigValue& root, const std::string& camera, Calibrati
         refuse_model({*type, "Camera.type"}, k_orb_models);
 }
 
-/// A camera of rectified stereo as it was.
+/// A camera of rectified stereo before rectification.
 void read_unrectified(const ConfigValue& root, const std::string& camera, Calibration& result) {
     constexpr auto k_matrix = "give the nine numbers fx 0 cx 0 fy cy 0 0 1";
     constexpr auto k_coefficients = "give k1 k2 p1 p2 k3";

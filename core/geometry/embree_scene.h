@@ -22,7 +22,7 @@ inline bool between_ends(double t) {
 }
 
 /// A ray during traversal, and the nearest candidate that the callbacks have accepted. The
-/// candidate must be read from here: Embree's own record may hold a farther one.
+/// candidate must be read from here: Embree's own record may be of a farther one.
 struct Query {
     Point3 origin;
     Vector3 direction{0.0};

@@ -23,11 +23,11 @@ std::string read_gltf_text(const std::filesystem::path& file);
 
 /// The JSON of a .gltf file, or of the first chunk of a .glb file (glTF 2.0, section 4.4). Throws
 /// IoError, InputError (not glTF 2, truncated, nested too deeply), nlohmann's exceptions. Includes
-/// nlohmann-json, so this header is for gltf_*.cpp only. Long data URIs are whole in buffers and
-/// images; elsewhere, where nothing looks at them, something short stands for them.
+/// nlohmann-json, so this header is for gltf_*.cpp only. Long data URIs are kept in buffers and
+/// images; elsewhere, where they are unused, a short placeholder replaces them.
 nlohmann::json load_gltf_json(const std::filesystem::path& file);
 
-/// Throws the InputError for what nlohmann's JSON says of a file.
+/// Throws nlohmann's error about a file as an InputError.
 [[noreturn]] void fail_broken_gltf(const std::filesystem::path& file,
                                    const nlohmann::json::exception& error);
 

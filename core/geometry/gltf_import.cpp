@@ -47,7 +47,7 @@ GltfCamera read_camera(const GltfDocument& document, const Json& json) {
     return camera;
 }
 
-/// `extras` may hold anything: only numbers count.
+/// `extras` may contain anything: only numbers count.
 double custom_number(const Json& extras, const char* key, double otherwise) {
     const auto found = extras.find(key);
     const bool is_number = found != extras.end() && found->is_number();

@@ -29,7 +29,7 @@ TextureWrap wrap_of(std::uint64_t mode) {
 }
 
 /// KHR_texture_transform: offset, then rotation, then scale, as matrices are written. The rotation
-/// is counter-clockwise as the texture is seen, its v pointing down.
+/// is counter-clockwise on the texture with v pointing down.
 std::array<double, 6> transform_of(const Json& extension) {
     const auto offset = extension.value("offset", std::array<double, 2>{0, 0});
     const auto scale = extension.value("scale", std::array<double, 2>{1, 1});

@@ -19,7 +19,7 @@ namespace uw {
 ///
 /// Three bands are red, green and blue in this order, whatever their wavelengths. Any other number
 /// of bands is interpolated linearly in wavelength between blue at 450 nm, green at 540 nm and red
-/// at 620 nm, and held constant beyond these ends: RGB contains no more information.
+/// at 620 nm, and constant beyond these ends: RGB contains no more information.
 class ReflectanceBands {
   public:
     /// `wavelengths_nm`: one per band, at most k_max_bands (else std::invalid_argument).

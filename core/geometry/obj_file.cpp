@@ -239,7 +239,7 @@ class Library {
 
     double fraction(TextLine& line) const { return std::clamp(number(line), 0.0, 1.0); }
 
-    /// One number stands for three.
+    /// Reads three numbers; a single one counts for all three.
     Rgb color(TextLine& line, double most) const {
         Rgb rgb{};
         rgb[0] = std::clamp(number(line), 0.0, most);
@@ -248,7 +248,7 @@ class Library {
         return rgb;
     }
 
-    /// Options, then the file's name, which may hold spaces.
+    /// Options, then the file's name, which may contain spaces.
     MtlMap map(TextLine& line) const {
         static const std::map<std::string_view, int> k_words_after{
             {"-blendu", 1}, {"-blendv", 1},  {"-cc", 1},   {"-bm", 1}, {"-boost", 1},

@@ -70,7 +70,7 @@ Libraries find_libraries(const fs::path& obj_file, const std::vector<std::string
         }
     };
     for (const std::string& statement : statements) {
-        // One name that may hold spaces, or several between them.
+        // One name that may contain spaces, or several between them.
         const fs::path whole = path_of(statement);
         if (is_inside(whole) && is_file(obj_file.parent_path() / whole)) {
             add(statement);

@@ -63,7 +63,7 @@ class PlySource {
 /// Other colours are skipped with a warning; alpha, texture coordinates, and elements other than
 /// vertices and faces, without one. Corners past the last vertex are kept for
 /// drop_bad_triangles to count. Throws IoError, InputError (also for a header that promises more
-/// than the file holds).
+/// than the file contains).
 TriangleMesh read_ply(const std::filesystem::path& file, std::vector<std::string>& warnings);
 
 }  // namespace uw

@@ -58,7 +58,8 @@ struct Beginning {
     std::uint64_t promised_size() const {
         return k_header_bytes + k_triangle_bytes * promised_triangles();
     }
-    /// Binary files may begin with "solid" as well: what tells them is their size, or a zero.
+    /// Whether the file is text. Binary files may begin with "solid" as well: they are recognised
+    /// by their size, or by a zero byte.
     bool is_text() const {
         if (is_header() && promised_size() == file_size) return false;
         const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(

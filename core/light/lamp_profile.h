@@ -70,7 +70,7 @@ void append_half_plane_crossing(const Ray& ray, const Point3& apex, const Vector
 /// The point of an interval of a ray at which the angle to a beam's axis is least.
 struct AxisApproach {
     double s = 0;        // distance along the ray
-    double cosine = -1;  // of the angle, seen from the beam's apex
+    double cosine = -1;  // of the angle at the beam's apex
 };
 
 /// Finds where the angle between `interval` and `axis` (unit) at `apex` is least.
@@ -183,7 +183,7 @@ class SoftSpotProfile {
     SpotProfile spot_;
     Vector3 offset_;
     Matrix3 covariance_;
-    // Of the angle at which the light ends, whose density is the negative slope of the profile.
+    // Moments of the angle at which the light ends, whose pdf is the negative slope of the profile.
     double mean_, deviation_;
     double dark_, full_;    // where the edge is dark and full, from the mean in standard deviations
     double max_displaced_;  // the greatest variance by which a part blurs the edge [rad^2]

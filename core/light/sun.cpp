@@ -34,8 +34,8 @@ double SunPosition::apparent_elevation() const {
 }
 
 SunPosition sun_position(double unix_time, double latitude, double longitude) {
-    // Universal time stands for dynamical time: in the minute or so between them the sun moves by
-    // 0.001 degrees.
+    // Universal time replaces dynamical time: they differ by about a minute, in which the sun moves
+    // by 0.001 degrees.
     const double days = unix_time / 86400 + 2440587.5 - 2451545;  // since J2000.0
     const double t = days / 36525;                                // [Julian centuries]
     const double mean_longitude = 280.46646 + t * (36000.76983 + t * 0.0003032);

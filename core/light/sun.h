@@ -13,7 +13,7 @@ inline constexpr double k_sun_radius = 0.26656;
 /// Nominal total solar irradiance [W/m^2] and effective temperature [K] (IAU 2015, resolution B3).
 inline constexpr double k_solar_irradiance = 1361, k_solar_temperature = 5772;
 
-/// Where the sun stands in the sky of a place.
+/// The position of the sun in the sky.
 struct SunPosition {
     double azimuth = 0;    ///< clockwise from north, seen from above [degrees], 0..360
     double elevation = 0;  ///< of its centre above the horizon, without refraction [degrees]

@@ -28,8 +28,8 @@ struct PoseLine {
     [[noreturn]] void fail(const std::string& what) const;
     /// A finite number; `name` is the column's.
     double parsed(std::string_view cell, std::string_view name) const;
-    /// A time to the nearest nanosecond [ns], of which one of its units has 10^places. `expected`
-    /// says what it is; `hint` what a number that is too large for a time may be instead.
+    /// A time to the nearest nanosecond [ns]; its unit is 10^places ns. `expected` describes the
+    /// number; `hint` says what a number that is too large for a time may be instead.
     std::int64_t stamp(std::string_view cell, int places, std::string_view expected,
                        std::string_view hint) const;
     /// The rotation of a quaternion of length 1 to within 1e-3.
@@ -42,9 +42,9 @@ constexpr double k_max_pose_number = 1e12;
 /// The last time of a file of poses, in the year 2116: differences of two fit into 64 bits [ns].
 constexpr std::int64_t k_last_stamp = std::int64_t{1} << 62;
 
-/// A decimal number in units of 10^-places, to the nearest whole one: 64 bits hold what a double
-/// rounds, the nanoseconds of a clock that began in 1970. None beyond k_last_stamp. Precondition:
-/// parse_number reads it.
+/// A decimal number in units of 10^-places, rounded to the nearest whole one. 64 bits are exact
+/// where a double is not: for the nanoseconds of a clock that began in 1970. None beyond
+/// k_last_stamp. Precondition: parse_number reads it.
 std::optional<std::int64_t> decimal_in_units(std::string_view text, int places) {
     const bool is_negative = text.starts_with('-');
     if (is_negative || text.starts_with('+')) text.remove_prefix(1);
@@ -570,8 +570,8 @@ std::optional<std::int64_t> nanoseconds(double seconds) {
 
 namespace {
 
-/// What is odd about the times of a file of which frame n is shown at n/fps seconds; empty if
-/// nothing is. A few whole numbers from 0 or 1 on may be anything.
+/// A doubt about the times of a file whose frame n is shown at n/fps seconds; empty if they are
+/// plausible. A few whole numbers from 0 or 1 on may be anything.
 std::string doubt_of_times(const std::vector<std::int64_t>& stamps, double fps) {
     constexpr std::int64_t k_second = 1'000'000'000;
     constexpr std::size_t k_few = 10;

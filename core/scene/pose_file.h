@@ -33,9 +33,8 @@ inline constexpr std::size_t k_max_poses = 1'000'000;
 ///
 /// Times are exact to the nanosecond, whatever the clock.
 ///
-/// - TUM: `timestamp tx ty tz qx qy qz qw`, world_from_body, '#' comments; seconds, of which what
-/// is
-///   smaller than a nanosecond is rounded.
+/// - TUM: `timestamp tx ty tz qx qy qz qw`, world_from_body, '#' comments; seconds, rounded
+///   to nanoseconds.
 /// - EuRoC (ASL): CSV of ns, x, y, z, qw, qx, qy, qz and perhaps more; world_from_body.
 /// - COLMAP's images.txt, camera_from_world, w first, every other line skipped; or images.bin, by
 ///   the name's ending, the same in binary form.

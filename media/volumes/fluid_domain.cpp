@@ -68,7 +68,7 @@ void read_box(const ConfigValues& values, FluidConfig& config) {
         if (!(sides[axis] > 0) || !std::isfinite(sides[axis])) return;
         axes[axis] = column / length;
     }
-    constexpr double k_flat = 1e-6;  // the file's floats do not tell a flatter one from none
+    constexpr double k_flat = 1e-6;  // flatter ones are within the rounding of the file's floats
     if (!(std::abs(glm::determinant(axes)) > k_flat)) return;
     config.sides = sides;
     const Affine blender_from_object(

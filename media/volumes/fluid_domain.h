@@ -62,9 +62,9 @@ struct FluidDomain {
     std::string description() const;
 };
 
-/// Reads what is known of a frame's domain from its configuration. Without one, recognises a frame
-/// of an adaptive domain by comparing it with others of its sequence, which lie beside it and
-/// differ in their number: up to eight of them, by their headers. Empty if nothing tells.
+/// Reads a frame's domain from its configuration. Without one, recognises a frame of an adaptive
+/// domain by comparing it with others of its sequence, which lie beside it and differ in their
+/// number: up to eight of them, by their headers. Empty if there is no evidence.
 std::optional<FluidDomain> find_fluid_domain(const VdbHeader& header);
 
 /// A grid's corrected transform: scaled about the file's origin such that its voxels have edges of

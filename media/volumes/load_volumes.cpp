@@ -19,8 +19,8 @@ namespace uw {
 
 namespace {
 
-// The largest value of a grid, and the largest concentration that it may stand for [ppm, or units
-// of its own coefficients].
+// The largest value of a grid, and the largest concentration that it may mean [ppm, or units of its
+// own coefficients].
 constexpr double k_max_value = 1e30, k_max_concentration = 1e12;
 constexpr double k_min_voxel = 1e-9;  // m
 

@@ -117,7 +117,7 @@ class NanoGrid {
 };
 
 /// A grid ready to be sampled. Large grids are split into several bricks whose values add up: each
-/// holds a slab of whole 8^3 blocks, and interpolation with zeros outside is linear.
+/// contains a slab of whole 8^3 blocks, and interpolation with zeros outside is linear.
 struct LoadedGrid {
     std::string name;
     Affine file_from_index;  // the file's transform: metres, index (i, j, k) where OpenVDB puts it

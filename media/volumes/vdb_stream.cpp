@@ -272,7 +272,7 @@ std::size_t bytes_of_leaf(const openvdb::GridBase& grid) {
     return bytes;
 }
 
-/// What slabs hold at most, if `total` bytes are cut into slabs of about `slab_bytes`.
+/// The greatest size of slabs [bytes] if `total` bytes are cut into slabs of about `slab_bytes`.
 std::size_t max_slab(std::size_t total, std::size_t slab_bytes) {
     return std::min(total, std::max(slab_bytes, total / 8));
 }

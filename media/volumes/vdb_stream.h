@@ -27,7 +27,7 @@ openvdb::math::Transform::ConstPtr read_transform(const VdbHeader& header, const
 Affine to_affine(const openvdb::math::Transform& transform);
 
 /// Reads a grid in slabs of about `slab_bytes` and passes each to `take`; their active voxels are
-/// disjoint. The grid is split along its longest axis at block boundaries, so that no slab holds
+/// disjoint. The grid is split along its longest axis at block boundaries, so that no slab contains
 /// more than `slab_bytes` of leaf values, or an eighth of all. A NanoVDB grid comes as a single
 /// slab. The value type is one of ReadableGrids. Throws InputError starting with `where`, also if a
 /// slab and what is made of all of them do not fit into free memory; Interrupted; and OpenVDB's
