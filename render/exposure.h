@@ -39,7 +39,7 @@ class Exposure {
     /// Assembles the scene of part `part`, counted from 0.
     AssembledScene part(int part, SceneCache& cache) const;
     /// The fraction of the exposure of pixel row `row` that belongs to a part.
-    double fraction(int part, int row) const { return rows_of(part).share(row); }
+    double fraction(int part, int row) const { return rows_of(part).fraction(row); }
     /// Whether the part contains the middle of the row's exposure, the time of its ground truth.
     bool has_middle(int part, int row) const;
 

@@ -43,7 +43,7 @@ void LightSplatter::drop_outdated(const AssembledScene& scene, const DeepShadowO
 
 int LightSplatter::shadow_resolution(const Lamp& emitter) const {
     const auto resolution =
-        static_cast<int>(options_.shadow_resolution * std::sqrt(emitter.share()));
+        static_cast<int>(options_.shadow_resolution * std::sqrt(emitter.fraction()));
     return std::max(resolution, std::min(options_.shadow_resolution, k_min_shadow_resolution));
 }
 

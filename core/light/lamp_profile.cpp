@@ -214,14 +214,14 @@ constexpr double k_negligible = 1e-12;
 
 namespace {
 
-// How far at most a part's extent deflects the edge, relative to the beam's mean angle (or what is
-// left of it to 180 degrees): close to its point the beam stays a beam. In truth it is the place
-// from which the light comes that is blurred there, and its directions stay in the beam, which
-// strongly forward scattering water would show.
+// The greatest deflection of the edge by a part's extent, relative to the beam's mean angle (or to
+// what remains of it to 180 degrees): close to its point the beam remains a beam. In reality the
+// origin of the light is blurred there, not its direction, which strongly forward scattering water
+// would show.
 constexpr double k_max_deflection = 0.35;
 constexpr int k_panels = 8;  // for moments of an edge or a core to rounding
 
-// The sum of the variances in three directions, which that in no direction exceeds [m^2].
+// The sum of the variances along the axes, an upper bound on that in any direction [m^2].
 double variance_of(const Matrix3& covariance) {
     return covariance[0][0] + covariance[1][1] + covariance[2][2];
 }
@@ -231,8 +231,9 @@ double variance_of(const Matrix3& covariance) {
 SoftSpotProfile::SoftSpotProfile(const SpotProfile& spot, const Vector3& offset,
                                  const Matrix3& covariance)
     : spot_(spot.with_an_edge()), offset_(offset), covariance_(covariance) {
-    // The light ends before the angle dark - x with the probability 1 - f(dark - x), so that the
-    // means of x and x^2 are the integrals of that and of 2 x times that.
+    // The profile f as the probability that the light ends beyond an angle: it ends before dark - x
+    // with the probability 1 - f(dark - x), so that the means of x and x^2 are the integrals of
+    // that and of 2 x times that.
     const double dark = spot_.dark_angle();
     const double ramp = dark - spot_.full_angle();
     double first = 0, second = 0;
@@ -262,53 +263,55 @@ SoftSpotProfile::SoftSpotProfile(const SpotProfile& spot, const Vector3& offset,
 }
 
 DirectionCone SoftSpotProfile::cone() const {
-    // The middle of the part lies beside the point.
+    // The mean of the part is not exactly at the point.
     constexpr double k_room = 1.1;
     const double dark = k_room * std::acos(cos_dark_);
     return {spot_.axis(), dark < std::numbers::pi ? std::cos(dark) : -1};
 }
 
-// In the mean over an angle of mean m and variance V, cos is nearly cos(m) (1 - V/2), which is 1 -
-// flux / (2 pi).
+// The mean of the cosine of an angle with mean m and variance V is nearly cos(m) (1 - V/2), which
+// is 1 - flux / (2 pi).
 SoftSpotProfile::Edge SoftSpotProfile::edge(double displaced) const {
-    Edge seen{mean_, std::sqrt(deviation_ * deviation_ + displaced), 1};
+    Edge blurred{mean_, std::sqrt(deviation_ * deviation_ + displaced), 1};
     const double left = std::cos(mean_) * (1 - 0.5 * deviation_ * deviation_);
-    // An edge of a narrow beam that is blurred goes farther out than in, and has to move inwards.
+    // Blurring the edge of a narrow beam adds more solid angle outside than it removes inside, so
+    // that its mean has to move inwards.
     if (left > 0)
-        seen.mean = std::acos(
-            std::min(1.0, left / std::max(1e-9, 1 - 0.5 * seen.deviation * seen.deviation)));
-    // Where it comes as far as the axis the light is spread over more directions.
-    if (seen.mean + full_ * seen.deviation < 0) {
-        seen.deviation = std::min(seen.deviation, std::numbers::pi / (dark_ - full_));
-        seen.mean = -full_ * seen.deviation;
-        const double spread = std::cos(seen.mean) * (1 - 0.5 * seen.deviation * seen.deviation);
-        seen.peak = std::min(1.0, (1 - left) / (1 - spread));
+        blurred.mean = std::acos(
+            std::min(1.0, left / std::max(1e-9, 1 - 0.5 * blurred.deviation * blurred.deviation)));
+    // If the edge extends to the axis, the light is spread over more directions.
+    if (blurred.mean + full_ * blurred.deviation < 0) {
+        blurred.deviation = std::min(blurred.deviation, std::numbers::pi / (dark_ - full_));
+        blurred.mean = -full_ * blurred.deviation;
+        const double spread =
+            std::cos(blurred.mean) * (1 - 0.5 * blurred.deviation * blurred.deviation);
+        blurred.peak = std::min(1.0, (1 - left) / (1 - spread));
     }
-    return seen;
+    return blurred;
 }
 
 double SoftSpotProfile::relative_intensity(const Vector3& v) const {
-    const Vector3 way = v - offset_, axis = spot_.axis();
-    const double r2 = glm::dot(way, way);
+    const Vector3 path = v - offset_, axis = spot_.axis();
+    const double r2 = glm::dot(path, path);
     if (!(r2 > 0)) return 0;
-    const double along = glm::dot(way, axis), cosine = along / std::sqrt(r2);
+    const double along = glm::dot(path, axis), cosine = along / std::sqrt(r2);
     if (cosine >= cos_core_) return 1;
     if (cosine <= cos_dark_) return 0;
-    const Vector3 across = axis - along / r2 * way;
+    const Vector3 across = axis - along / r2 * path;
     const double across2 = glm::dot(across, across);
     const double variance =
         across2 > 1e-12 ? glm::dot(across, covariance_ * across) / across2
                         : 0.5 * (variance_of(covariance_) - glm::dot(axis, covariance_ * axis));
-    const Edge seen = edge(std::min(variance / r2, max_displaced_));
+    const Edge blurred = edge(std::min(variance / r2, max_displaced_));
     const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
-    return seen.peak *
-           spot_.at(std::max(0.0, mean_ + (angle - seen.mean) * deviation_ / seen.deviation));
+    return blurred.peak *
+           spot_.at(std::max(0.0, mean_ + (angle - blurred.mean) * deviation_ / blurred.deviation));
 }
 
-// Its edge lies at most that far from the spot's as its part reaches, and thus between the cones
-// whose apexes lie before and behind the point. Between them further ones divide it.
-void SoftSpotProfile::append_breaks(const Ray& ray, const Interval& /*stretch*/, const Point3& apex,
-                                    std::vector<double>& s) const {
+// The edge is displaced from the spot's by at most the extent of the part, and thus lies between
+// cones whose apexes lie before and behind the point. Further cones divide the space between them.
+void SoftSpotProfile::append_breaks(const Ray& ray, const Interval& /*interval*/,
+                                    const Point3& apex, std::vector<double>& s) const {
     const double deviation = std::sqrt(variance_of(covariance_));
     const double outwards = (dark_ - full_) * deviation, inwards = full_ * deviation;
     const Point3 middle = apex + offset_;

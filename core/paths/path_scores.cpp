@@ -281,8 +281,9 @@ double PathScores::eval_lamp(const Side& side, const Vertex& vertex, std::size_t
     const Lamp& lamp = (*side.scene.emitters)[emitter];
     const Vector3 to_lamp = lamp.origin(vertex.position) - vertex.position;
     const double length = glm::length(to_lamp);
-    const double squared_offset =
-        vertex.kind == PathVertex::Kind::scattered ? lamp.aside({vertex.position, vertex.in}) : 0;
+    const double squared_offset = vertex.kind == PathVertex::Kind::scattered
+                                      ? lamp.squared_offset({vertex.position, vertex.in})
+                                      : 0;
     const double radius = std::sqrt(length * length + squared_offset);
     const double light =
         lamp.relative_intensity(-to_lamp) * lamp.focus(vertex.position) / lamp.spread(radius);

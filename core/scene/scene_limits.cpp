@@ -53,8 +53,8 @@ class Checked {
     }
     /// Checks that a number is neither too large nor, unless it is 0, too small to be realistic.
     void number(std::string_view name, double value) const {
-        constexpr std::string_view k_mend = "check its unit";
-        at_most(k_max_quantity, name, {value}, k_mend);
+        constexpr std::string_view k_hint = "check its unit";
+        at_most(k_max_quantity, name, {value}, k_hint);
         if (value != 0 && std::abs(value) < k_min_number)
             fail(
                 fmt::format("its {} of {:g} is below {:g}; {}", name, value, k_min_number, k_hint));

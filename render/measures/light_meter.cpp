@@ -64,7 +64,7 @@ std::vector<Beam> beams_at(const AssembledScene& scene, const Point3& x) {
         const Point3 origin = emitter.origin(x);
         const Vector3 from_lamp = x - origin;
         const double radius = glm::length(from_lamp);
-        if (!(radius > 0) || emitter.holds(radius)) continue;
+        if (!(radius > 0) || emitter.contains(radius)) continue;
         const double relative =
             emitter.relative_intensity(from_lamp) * emitter.focus(x) / emitter.spread(radius);
         if (!(relative > 0)) continue;
