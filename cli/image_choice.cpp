@@ -71,12 +71,6 @@ int take_number(std::string_view& text, std::string_view part, const ListOption&
     return number;
 }
 
-bool take(std::string_view& text, char c) {
-    if (!text.starts_with(c)) return false;
-    text.remove_prefix(1);
-    return true;
-}
-
 struct ListedRange {
     int first = 0, last = 0, step = 1;
 };
@@ -85,9 +79,9 @@ ListedRange parse_range(std::string_view part, const ListOption& option) {
     std::string_view text = part;
     ListedRange range;
     range.first = range.last = take_number(text, part, option);
-    if (take(text, '-')) {
+    if (take_beginning(text, "-")) {
         range.last = take_number(text, part, option);
-        if (take(text, ':')) range.step = take_number(text, part, option);
+        if (take_beginning(text, ":")) range.step = take_number(text, part, option);
     }
     if (!text.empty()) option.refuse_form(part);
     if (range.last < range.first)

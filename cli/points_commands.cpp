@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <iterator>
@@ -37,14 +36,9 @@ namespace {
 
 constexpr std::size_t k_rows_per_part = 4096;
 
-bool is_same_word(std::string_view a, std::string_view b) {
-    return std::ranges::equal(
-        a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
-
-/// NaN for `nan`; none if the cell is not a number.
+/// NaN for `nan`; none for what is no number.
 std::optional<double> coordinate_in(std::string_view cell) {
-    if (is_same_word(cell, "nan")) return std::numeric_limits<double>::quiet_NaN();
+    if (same_ignoring_case(cell, "nan")) return std::numeric_limits<double>::quiet_NaN();
     double value = 0;
     if (parse_number(cell, value) != NumberText::number) return std::nullopt;
     return value;
@@ -58,7 +52,7 @@ bool contains_numbers(const std::vector<std::string_view>& cells) {
 std::optional<std::size_t> column_called(std::string_view name,
                                          const std::vector<std::string>& columns) {
     const auto found = std::ranges::find_if(
-        columns, [&](const std::string& column) { return is_same_word(column, name); });
+        columns, [&](const std::string& column) { return same_ignoring_case(column, name); });
     if (found == columns.end()) return std::nullopt;
     return static_cast<std::size_t>(found - columns.begin());
 }
@@ -70,7 +64,7 @@ CoordinateTable::CoordinateTable(std::string text, std::string name, NameSets na
     std::string_view rest = text_;
     skip_byte_order_mark(rest);
     for (int line_number = 1; !rest.empty(); ++line_number) {
-        const std::string_view line = take_csv_line(rest);
+        const std::string_view line = trimmed(take_line(rest));
         if (line.empty() || line.front() == '#') continue;
         if (!columns_.empty()) {
             read_row(line, line_number);

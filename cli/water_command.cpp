@@ -42,16 +42,6 @@ double parse_wavelength(std::string_view part, const std::string& text) {
     return value;
 }
 
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> parts;
-    for (std::size_t start = 0; start <= text.size();) {
-        const std::size_t end = std::min(text.find(separator, start), text.size());
-        parts.push_back(text.substr(start, end - start));
-        start = end + 1;
-    }
-    return parts;
-}
-
 std::vector<double> parse_range(const std::vector<std::string_view>& parts,
                                 const std::string& text) {
     const double step = parts.size() == 3 ? parse_number(parts[2], 1e-6, 1e5) : 0;
@@ -131,12 +121,6 @@ namespace {
 
 /// The wavelength of Kopelevich's tables and of the paper's figure 4.
 constexpr double k_reference_nm = 550;
-
-bool same_ignoring_case(const std::string& a, const std::string& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-        return std::tolower(x) == std::tolower(y);
-    });
-}
 
 /// The preset called `subject`; "" if there is none.
 std::string preset_called(const std::string& subject) {

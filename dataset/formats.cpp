@@ -36,13 +36,11 @@ namespace {
 /// Adds the layers of `request` that a set with or without frames and rig can have.
 void append_layers(std::string& layers, std::string_view request,
                    const DatasetDefinition& definition) {
-    while (!request.empty()) {
-        const std::size_t end = std::min(request.find(','), request.size());
-        const std::string_view layer = request.substr(0, end);
+    if (request.empty()) return;
+    for (const std::string_view layer : split(request, ',')) {
         const bool is_missing = (layer.starts_with("flow") && !definition.frames.front()) ||
                                 (layer.starts_with("disparity") && definition.cameras.size() < 2);
         if (!is_missing) layers += (layers.empty() ? "" : ",") + std::string(layer);
-        request.remove_prefix(std::min(end + 1, request.size()));
     }
 }
 

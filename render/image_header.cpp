@@ -45,16 +45,10 @@ std::string csv_field(const std::string& text) {
 }  // namespace
 
 bool requests_ids(std::string_view layers) {
-    while (!layers.empty()) {
-        const std::size_t end = std::min(layers.find(','), layers.size());
-        std::string_view item = layers.substr(0, end);
-        const auto is_space = [](char c) { return c == ' ' || c == '\t'; };
-        while (!item.empty() && is_space(item.front())) item.remove_prefix(1);
-        while (!item.empty() && is_space(item.back())) item.remove_suffix(1);
-        if (item == "id" || item == "material" || item == "all") return true;
-        layers.remove_prefix(std::min(end + 1, layers.size()));
-    }
-    return false;
+    return std::ranges::any_of(split(layers, ','), [](std::string_view part) {
+        const std::string_view item = trimmed(part, " \t");
+        return item == "id" || item == "material" || item == "all";
+    });
 }
 
 std::filesystem::path id_table_beside(const std::filesystem::path& image) {

@@ -119,12 +119,7 @@ Options fit_options(FitArguments& a) {
     Option& unknown = options.parsed(
         "--unknown", "KEY[,KEY...]",
         [&a](const std::string& text) {
-            std::size_t begin = 0;
-            while (begin <= text.size()) {
-                const std::size_t end = std::min(text.find(',', begin), text.size());
-                a.unknowns.push_back(text.substr(begin, end - begin));
-                begin = end + 1;
-            }
+            for (const std::string_view path : split(text, ',')) a.unknowns.emplace_back(path);
         },
         "what to find: paths as of --set; * stands for every entry; exposure and response of "
         "pictures");

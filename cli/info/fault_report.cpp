@@ -50,11 +50,8 @@ std::string without_home(std::string text) {
 std::string indented(std::string_view text) {
     constexpr std::size_t k_longest_line = 300;
     std::string lines;
-    while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        lines += fmt::format("    {}\n", printable(text.substr(0, end), k_longest_line));
-        text.remove_prefix(std::min(end + 1, text.size()));
-    }
+    while (!text.empty())
+        lines += fmt::format("    {}\n", printable(take_line(text), k_longest_line));
     return lines;
 }
 

@@ -22,24 +22,6 @@ double SampledCurve::value(double at) const {
     return y[i] + t * (y[i + 1] - y[i]);
 }
 
-namespace {
-
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view k_blank = " \t\r";
-    const std::size_t first = text.find_first_not_of(k_blank);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(k_blank) - first + 1);
-}
-
-}  // namespace
-
-std::string_view take_csv_line(std::string_view& text) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    return line;
-}
-
 void skip_byte_order_mark(std::string_view& text) {
     constexpr std::string_view k_byte_order_mark = "\xEF\xBB\xBF";
     if (text.starts_with(k_byte_order_mark)) text.remove_prefix(k_byte_order_mark.size());
@@ -77,7 +59,7 @@ CsvTable::CsvTable(std::string_view text, std::string name) : name_(std::move(na
     skip_byte_order_mark(text);
     int line_number = 0;
     while (!text.empty()) {
-        const std::string_view line = take_csv_line(text);
+        const std::string_view line = trimmed(take_line(text));
         ++line_number;
         if (line.empty() || line.front() == '#') continue;
         if (std::count(line.begin(), line.end(), ',') >= static_cast<std::ptrdiff_t>(k_max_columns))

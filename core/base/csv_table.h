@@ -32,9 +32,6 @@ const std::vector<EmbeddedTable>& embedded_tables();
 
 /// Functions that read lines of comma-separated values.
 
-/// Takes the next line, without blanks at its ends, from the beginning of `text`.
-std::string_view take_csv_line(std::string_view& text);
-
 /// Removes the byte order mark that `text` may begin with.
 void skip_byte_order_mark(std::string_view& text);
 

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cerrno>
 #include <charconv>
 #include <fstream>
@@ -34,10 +33,6 @@ struct Place {
     int digits = 0;          // at least
 };
 
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
 // Removes "0N", N of one or two digits, from the beginning of `text`.
 std::optional<int> take_width(std::string_view& text) {
     if (!text.starts_with('0')) return std::nullopt;
@@ -50,27 +45,21 @@ std::optional<int> take_width(std::string_view& text) {
     return width;
 }
 
-bool take(std::string_view& text, std::string_view beginning) {
-    if (!text.starts_with(beginning)) return false;
-    text.remove_prefix(beginning.size());
-    return true;
-}
-
 // The pattern with which `text` begins.
 std::optional<Place> place_at(std::string_view text) {
     std::string_view rest = text;
     const auto place = [&](int digits) { return Place{text.size() - rest.size(), digits}; };
-    if (take(rest, "#")) {
-        while (take(rest, "#")) {
+    if (take_beginning(rest, "#")) {
+        while (take_beginning(rest, "#")) {
         }
         return place(static_cast<int>(text.size() - rest.size()));
     }
-    if (take(rest, "%")) {
+    if (take_beginning(rest, "%")) {
         const int digits = take_width(rest).value_or(0);
-        if (take(rest, "d")) return place(digits);
+        if (take_beginning(rest, "d")) return place(digits);
         return std::nullopt;
     }
-    if (take(rest, "$F")) {
+    if (take_beginning(rest, "$F")) {
         int digits = 0;
         if (!rest.empty() && is_digit(rest.front()) && rest.front() != '0') {
             digits = rest.front() - '0';
@@ -81,13 +70,13 @@ std::optional<Place> place_at(std::string_view text) {
         if (goes_on) return std::nullopt;
         return place(digits);
     }
-    if (take(rest, "{frame")) {
+    if (take_beginning(rest, "{frame")) {
         int digits = 0;
-        if (take(rest, ":")) {
+        if (take_beginning(rest, ":")) {
             digits = take_width(rest).value_or(0);
-            take(rest, "d");
+            take_beginning(rest, "d");
         }
-        if (take(rest, "}")) return place(digits);
+        if (take_beginning(rest, "}")) return place(digits);
     }
     return std::nullopt;
 }
@@ -460,8 +449,7 @@ constexpr auto k_other_formats = std::to_array<OtherFormat>({
 
 std::string other_format(std::string_view bytes, const std::filesystem::path& file,
                          std::string_view noun) {
-    std::string ending = file.extension().string() + " ";
-    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    const std::string ending = lower_case(file.extension().string()) + " ";
     const auto find = [](const auto& is_it) {
         return std::ranges::find_if(k_other_formats, is_it);
     };

@@ -8,8 +8,32 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 namespace uw {
+
+/// `text` without the blanks at its ends.
+std::string_view trimmed(std::string_view text, std::string_view blanks = " \t\r");
+
+/// Takes the next line from the beginning of `text`, and the line feed that ends it.
+std::string_view take_line(std::string_view& text);
+
+/// Takes `beginning` from the beginning of `text`; returns whether it stood there.
+bool take_beginning(std::string_view& text, std::string_view beginning);
+
+/// The parts of `text` between separators: one more than it has separators, each perhaps empty.
+std::vector<std::string_view> split(std::string_view text, char separator);
+
+/// Whether it is one of 0 to 9.
+constexpr bool is_digit(char c) {
+    return c >= '0' && c <= '9';
+}
+
+/// `text` with the capitals A to Z as small letters; other bytes stay, whatever the locale.
+std::string lower_case(std::string_view text);
+
+/// Whether the texts are the same but for capitals (lower_case).
+bool same_ignoring_case(std::string_view a, std::string_view b);
 
 /// User text made suitable for a one-line message: control characters become '?', and text longer
 /// than `max_bytes` is truncated at a UTF-8 boundary and ends in "...".

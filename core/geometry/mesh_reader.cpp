@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <set>
 #include <span>
 
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/base/vector_math.h"
 #include "core/geometry/gltf_reader.h"
 #include "core/geometry/mesh.h"
@@ -182,16 +182,9 @@ void ClampedValues::report(const std::string& name, std::vector<std::string>& wa
 
 namespace {
 
-std::string lower_extension(const std::filesystem::path& file) {
-    std::string extension = file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 MeshFile read_any(const std::filesystem::path& file, std::vector<std::string>& warnings,
                   const GltfUse& use) {
-    const std::string extension = lower_extension(file);
+    const std::string extension = lower_case(file.extension().string());
     const std::string name = file.stem().string();
     if (extension == ".ply") return {read_ply(file, warnings), {}, {name}, {}};
     if (extension == ".obj") return read_obj(file, use.pbr, warnings);
@@ -200,7 +193,7 @@ MeshFile read_any(const std::filesystem::path& file, std::vector<std::string>& w
 }
 
 void check_file(const std::filesystem::path& file) {
-    const std::string extension = lower_extension(file);
+    const std::string extension = lower_case(file.extension().string());
     const bool known = extension == ".gltf" || extension == ".glb" || extension == ".obj" ||
                        extension == ".ply" || extension == ".stl";
     if (!known) {
@@ -277,7 +270,7 @@ MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& 
 }
 
 std::vector<std::filesystem::path> files_named_by_mesh(const std::filesystem::path& file) {
-    const std::string extension = lower_extension(file);
+    const std::string extension = lower_case(file.extension().string());
     if (extension == ".gltf" || extension == ".glb") return files_named_by_gltf(file);
     if (extension == ".obj") return files_named_by_obj(file);
     return {};  // STL and PLY refer to no other files

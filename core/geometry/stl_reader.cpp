@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -37,13 +36,6 @@ constexpr std::uint64_t k_max_triangles = 500'000'000;
                                  name, k_max_triangles / 1'000'000));
 }
 
-/// Whether it is this word, in capitals or not.
-bool is_keyword(std::string_view word, std::string_view keyword) {
-    return std::ranges::equal(word, keyword, [](char c, char of_keyword) {
-        return std::tolower(static_cast<unsigned char>(c)) == of_keyword;
-    });
-}
-
 /// The first bytes of the file: its header if it is binary.
 struct Beginning {
     std::array<char, k_header_bytes> bytes{};
@@ -65,7 +57,7 @@ struct Beginning {
         const auto end = bytes.begin() + static_cast<std::ptrdiff_t>(
                                              std::min(file_size, std::uint64_t{k_header_bytes}));
         return std::find(bytes.begin(), end, '\0') == end &&
-               is_keyword(TextLine({bytes.begin(), end}).next(), "solid");
+               same_ignoring_case(TextLine({bytes.begin(), end}).next(), "solid");
     }
 };
 
@@ -129,7 +121,9 @@ class StlText {
         while (!line.is_at_end()) {
             throw_if_stopped();
             const std::string_view word = line.word();
-            const auto is = [&](std::string_view keyword) { return is_keyword(word, keyword); };
+            const auto is = [&](std::string_view keyword) {
+                return same_ignoring_case(word, keyword);
+            };
             if (is("vertex")) {
                 read_vertex(line);
             } else if (is("endloop")) {

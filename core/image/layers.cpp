@@ -24,12 +24,6 @@ constexpr std::string_view k_lamp_prefix = "lamp.";
 /// EXR allows 255 bytes for "lamp.<name>.<band>nm".
 constexpr std::size_t k_longest_lamp_name = 200;
 
-std::string_view trimmed(std::string_view text) {
-    const auto begin = text.find_first_not_of(" \t");
-    if (begin == std::string_view::npos) return {};
-    return text.substr(begin, text.find_last_not_of(" \t") - begin + 1);
-}
-
 /// One suffix per band: R, G, B or the wavelengths, with enough digits to distinguish them.
 std::vector<std::string> band_suffixes(std::span<const double> bands_nm) {
     if (bands_nm.size() == 3) return {"R", "G", "B"};
@@ -168,12 +162,9 @@ LayerPlan::LayerPlan(std::string_view request, std::span<const double> bands_nm,
     first_.fill(-1);
     Selection selection{.supply = supply};
     selection.lamps.resize(lamp_names.size());
-    if (trimmed(request).empty()) request = "default";
-    for (std::size_t begin = 0; begin <= request.size();) {
-        const std::size_t end = std::min(request.find(',', begin), request.size());
-        selection.add(trimmed(request.substr(begin, end - begin)), lamp_names);
-        begin = end + 1;
-    }
+    if (trimmed(request, " \t").empty()) request = "default";
+    for (const std::string_view item : split(request, ','))
+        selection.add(trimmed(item, " \t"), lamp_names);
     // Which it is made from.
     if (selection.has(Layer::sensor)) selection.add_layer(static_cast<std::size_t>(Layer::total));
     const std::vector<std::string> bands = band_suffixes(bands_nm);

@@ -21,13 +21,6 @@ namespace {
 constexpr std::size_t k_max_file = std::size_t{4} << 20;
 constexpr std::size_t k_max_candelas = 1'100'000;  // a quarter of a degree in both angles
 
-std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view k_blank = " \t\r";
-    const std::size_t first = text.find_first_not_of(k_blank);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(k_blank) - first + 1);
-}
-
 std::string upper_case(std::string_view text) {
     std::string upper(text);
     std::ranges::transform(upper, upper.begin(),
@@ -48,11 +41,8 @@ class IesText {
 
     bool at_end() const { return rest_.empty(); }
     std::string_view line() {
-        const std::size_t end = rest_.find('\n');
-        const std::string_view whole = rest_.substr(0, end);
-        rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
         ++line_;
-        return trimmed(whole);
+        return trimmed(take_line(rest_));
     }
 
     /// Whether another number follows; numbers are separated by blanks, commas and line ends.

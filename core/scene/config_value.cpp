@@ -19,10 +19,6 @@ constexpr double k_shortest_direction = 1e-12;
 /// No key has meaningful values beyond this, and squares and products would overflow later.
 constexpr double k_max_number = 1e12;
 
-bool is_digit(char c) {
-    return c >= '0' && c <= '9';
-}
-
 /// Text such as "2m" or "1.5 ppm": starts as a number and ends as a word.
 bool looks_like_number_with_unit(std::string_view text) {
     const std::size_t word = text.find_first_not_of("+-0123456789. ");

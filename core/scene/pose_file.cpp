@@ -179,17 +179,6 @@ std::vector<TimedPose> by_frame(const std::vector<NamedPose>& named) {
     return number_by_names(named, by_number) ? by_number : poses;
 }
 
-/// Takes the next line from the beginning of `text`, without blanks at its ends.
-std::string_view take_line(std::string_view& text) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    constexpr std::string_view k_blanks = " \t\r";
-    const std::size_t first = line.find_first_not_of(k_blanks);
-    if (first == std::string_view::npos) return {};
-    return line.substr(first, line.find_last_not_of(k_blanks) - first + 1);
-}
-
 /// The cells of a line, between blanks or, with one, a separator and blanks; at most `most`, the
 /// last of which is then the rest of the line.
 std::vector<std::string_view> cells_of(std::string_view line, std::string_view separators,
@@ -227,7 +216,7 @@ void add_pose(PoseFile& file, const PoseLine& line, std::int64_t stamp, const Po
 PoseFile read_tum(std::string_view text, const std::string& origin) {
     PoseFile file;
     for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
-        const std::string_view content = take_line(text);
+        const std::string_view content = trimmed(take_line(text));
         if (content.empty() || content.front() == '#') continue;
         const std::vector<std::string_view> cells = cells_of(content, " \t,");
         constexpr std::array<std::string_view, 8> k_columns{"timestamp", "tx", "ty", "tz",
@@ -249,7 +238,7 @@ PoseFile read_tum(std::string_view text, const std::string& origin) {
 PoseFile read_euroc(std::string_view text, const std::string& origin) {
     PoseFile file;
     for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
-        const std::string_view content = take_line(text);
+        const std::string_view content = trimmed(take_line(text));
         if (content.empty() || content.front() == '#') continue;
         const std::vector<std::string_view> cells = cells_of(content, " \t,");
         constexpr std::array<std::string_view, 8> k_columns{"time", "x",  "y",  "z",
@@ -279,7 +268,7 @@ PoseFile read_euroc(std::string_view text, const std::string& origin) {
 std::vector<NamedPose> read_colmap_images(std::string_view text, const std::string& origin) {
     std::vector<NamedPose> named;
     for (PoseLine line{origin, 1}; !text.empty(); ++line.number) {
-        const std::string_view content = take_line(text);
+        const std::string_view content = trimmed(take_line(text));
         if (content.empty() || content.front() == '#') continue;
         constexpr std::array<std::string_view, 10> k_columns{
             "IMAGE_ID", "QW", "QX", "QY", "QZ", "TX", "TY", "TZ", "CAMERA_ID", "NAME"};

@@ -22,23 +22,17 @@ std::optional<int> take_digits(std::string_view& text, std::size_t digits) {
     int number = 0;
     if (text.size() < digits) return std::nullopt;
     for (std::size_t i = 0; i < digits; ++i) {
-        if (text[i] < '0' || text[i] > '9') return std::nullopt;
+        if (!is_digit(text[i])) return std::nullopt;
         number = 10 * number + (text[i] - '0');
     }
     text.remove_prefix(digits);
     return number;
 }
 
-bool take(std::string_view& text, std::string_view expected) {
-    if (!text.starts_with(expected)) return false;
-    text.remove_prefix(expected.size());
-    return true;
-}
-
 /// Hours and minutes, "12:30" [s].
 std::optional<int> take_hours(std::string_view& text) {
     const std::optional<int> hours = take_digits(text, 2);
-    if (!hours || *hours > 23 || !take(text, ":")) return std::nullopt;
+    if (!hours || *hours > 23 || !take_beginning(text, ":")) return std::nullopt;
     const std::optional<int> minutes = take_digits(text, 2);
     if (!minutes || *minutes > 59) return std::nullopt;
     return 3600 * *hours + 60 * *minutes;
@@ -47,33 +41,32 @@ std::optional<int> take_hours(std::string_view& text) {
 /// A time with its zone, as ISO 8601 has it: "2024-06-21T12:30:00Z", "2024-06-21 14:30+02:00".
 std::optional<double> unix_time(std::string_view text) {
     const std::optional<int> year = take_digits(text, 4);
-    if (!year || !take(text, "-")) return std::nullopt;
+    if (!year || !take_beginning(text, "-")) return std::nullopt;
     const std::optional<int> month = take_digits(text, 2);
-    if (!month || !take(text, "-")) return std::nullopt;
+    if (!month || !take_beginning(text, "-")) return std::nullopt;
     const std::optional<int> day = take_digits(text, 2);
-    if (!day || !(take(text, "T") || take(text, " "))) return std::nullopt;
+    if (!day || !(take_beginning(text, "T") || take_beginning(text, " "))) return std::nullopt;
     const std::chrono::year_month_day date{std::chrono::year(*year),
                                            std::chrono::month(static_cast<unsigned>(*month)),
                                            std::chrono::day(static_cast<unsigned>(*day))};
     const std::optional<int> hours = take_hours(text);
     if (!date.ok() || !hours) return std::nullopt;
     double seconds = 0;
-    if (take(text, ":")) {
+    if (take_beginning(text, ":")) {
         const std::optional<int> whole = take_digits(text, 2);
         if (!whole || *whole > 59) return std::nullopt;
         seconds = *whole;
-        if (take(text, "."))
-            for (double unit = 0.1; !text.empty() && text.front() >= '0' && text.front() <= '9';
-                 unit /= 10)
+        if (take_beginning(text, "."))
+            for (double unit = 0.1; !text.empty() && is_digit(text.front()); unit /= 10)
                 seconds += unit * *take_digits(text, 1);
     }
     int zone = 0;
-    const bool is_east = take(text, "+");
-    if (is_east || take(text, "-")) {
+    const bool is_east = take_beginning(text, "+");
+    if (is_east || take_beginning(text, "-")) {
         const std::optional<int> offset = take_hours(text);
         if (!offset) return std::nullopt;
         zone = is_east ? *offset : -*offset;
-    } else if (!take(text, "Z")) {
+    } else if (!take_beginning(text, "Z")) {
         return std::nullopt;
     }
     if (!text.empty()) return std::nullopt;

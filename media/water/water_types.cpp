@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <numbers>
 
 #include "core/base/csv_table.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "media/water/phase_functions.h"
 
 namespace uw {
@@ -132,12 +132,6 @@ const std::vector<JerlovPreset>& presets() {
         return all;
     }();
     return k_presets;
-}
-
-bool same_ignoring_case(std::string_view a, std::string_view b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-        return std::tolower(x) == std::tolower(y);
-    });
 }
 
 }  // namespace

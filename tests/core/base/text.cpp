@@ -12,6 +12,51 @@ namespace {
 constexpr std::array<std::string_view, 6> k_keys{"position",  "direction", "profile",
                                                  "intensity", "power",     "fov_x"};
 
+TEST(Text, IsTrimmedAtItsEndsOnly) {
+    EXPECT_EQ(trimmed(" \t a b\r"), "a b");
+    EXPECT_EQ(trimmed("a"), "a");
+    EXPECT_EQ(trimmed(" \t\r "), "");
+    EXPECT_EQ(trimmed(""), "");
+    EXPECT_EQ(trimmed(" a\r ", " \t"), "a\r");
+}
+
+TEST(Text, IsTakenLineByLine) {
+    std::string_view text = "a\r\n\nb";
+    EXPECT_EQ(take_line(text), "a\r");
+    EXPECT_EQ(take_line(text), "");
+    EXPECT_EQ(text, "b");
+    EXPECT_EQ(take_line(text), "b");
+    EXPECT_EQ(text, "");
+    EXPECT_EQ(take_line(text), "");
+}
+
+TEST(Text, LosesABeginningThatItHas) {
+    std::string_view text = "$F4";
+    EXPECT_FALSE(take_beginning(text, "F"));
+    EXPECT_EQ(text, "$F4");
+    EXPECT_TRUE(take_beginning(text, "$F"));
+    EXPECT_EQ(text, "4");
+    EXPECT_FALSE(take_beginning(text, "44"));
+}
+
+TEST(Text, IsSplitIntoOnePartMoreThanSeparators) {
+    using Parts = std::vector<std::string_view>;
+    EXPECT_EQ(split("a,b", ','), (Parts{"a", "b"}));
+    EXPECT_EQ(split(",a,", ','), (Parts{"", "a", ""}));
+    EXPECT_EQ(split("a b", ','), Parts{"a b"});
+    EXPECT_EQ(split("", ','), Parts{""});
+}
+
+TEST(Text, DiffersByCapitalsOfAsciiAlone) {
+    EXPECT_EQ(lower_case("Jerlov-IC \xC3\x84"), "jerlov-ic \xC3\x84");
+    EXPECT_TRUE(same_ignoring_case("NaN", "nan"));
+    EXPECT_TRUE(same_ignoring_case("", ""));
+    EXPECT_FALSE(same_ignoring_case("nan", "nanny"));
+    EXPECT_FALSE(same_ignoring_case("@", "`"));  // 32 apart, as letters are
+    EXPECT_TRUE(is_digit('0') && is_digit('9'));
+    EXPECT_FALSE(is_digit('/') || is_digit(':'));
+}
+
 TEST(Text, PrintableKeepsAShortLineAsItIs) {
     EXPECT_EQ(printable("plume 1.vdb"), "plume 1.vdb");
     EXPECT_EQ(printable(""), "");
