@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string_view>
 
 #include "cli/console.h"
+#include "cli/number_range.h"
 #include "cli/water_report.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
@@ -28,46 +28,40 @@ constexpr int k_max_listed_bands = 2000;
     throw UsageError(fmt::format("--bands {}: {}", printable(text), what));
 }
 
-/// A number within [low, high], or 0.
-double parse_number(std::string_view text, double low, double high) {
-    double value = 0;
-    const char* const end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data(), end, value);
-    return error == std::errc() && stop == end && value >= low && value <= high ? value : 0;
+void check_wavelength(double nm, const std::string& text) {
+    if (!(nm >= 10 && nm <= 1e5)) fail(text, "give nanometres, as in 620,540,450 or 400:700:10");
 }
 
-double parse_wavelength(std::string_view part, const std::string& text) {
-    const double value = parse_number(part, 10, 1e5);
-    if (value == 0) fail(text, "give nanometres, as in 620,540,450 or 400:700:10");
-    return value;
-}
-
-std::vector<double> parse_range(const std::vector<std::string_view>& parts,
-                                const std::string& text) {
-    const double step = parts.size() == 3 ? parse_number(parts[2], 1e-6, 1e5) : 0;
-    if (step == 0) fail(text, "a range is first:last:step in nm, such as 400:700:10");
-    const double first = parse_wavelength(parts[0], text);
-    const double last = parse_wavelength(parts[1], text);
-    const double count = std::floor((last - first) / step + 1e-9) + 1;
-    if (count < 1) fail(text, "the last wavelength is less than the first; swap them");
-    if (count > k_max_listed_bands)
-        fail(text, fmt::format("more than {} wavelengths; give a larger step", k_max_listed_bands));
+std::vector<double> wavelengths_of_range(const std::string& text) {
+    const std::optional<NumberRange> range = number_range_in(text);
+    if (!range || !(range->step >= 1e-6 && range->step <= 1e5))
+        fail(text, "a range is first:last:step in nm, such as 400:700:10");
+    check_wavelength(range->first, text);
+    check_wavelength(range->last, text);
+    if (range->last < range->first)
+        fail(text, "the last wavelength is less than the first; swap them");
+    const double count = range->count();
+    if (count > k_max_bands)
+        fail(text, fmt::format("more than {} wavelengths; give a larger step", k_max_bands));
     std::vector<double> bands;
     bands.reserve(static_cast<std::size_t>(count));
-    for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(first + i * step);
+    for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(range->at(i));
     return bands;
 }
 
 }  // namespace
 
 std::vector<double> parse_bands(const std::string& text) {
-    const std::vector<std::string_view> range = split(text, ':');
-    if (range.size() > 1) return parse_range(range, text);
+    if (text.find(':') != std::string::npos) return wavelengths_of_range(text);
     std::vector<double> bands;
-    for (const std::string_view part : split(text, ','))
-        bands.push_back(parse_wavelength(part, text));
-    if (bands.size() > static_cast<std::size_t>(k_max_listed_bands))
-        fail(text, fmt::format("more than {} wavelengths", k_max_listed_bands));
+    for (const std::string_view part : split(text, ',')) {
+        double nm = 0;  // and stays it if the part is no number
+        parse_number(part, nm);
+        check_wavelength(nm, text);
+        bands.push_back(nm);
+    }
+    if (bands.size() > static_cast<std::size_t>(k_max_bands))
+        fail(text, fmt::format("more than {} wavelengths", k_max_bands));
     std::vector<double> sorted = bands;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())

@@ -13,6 +13,7 @@
 
 #include "cli/console.h"
 #include "cli/image_choice.h"
+#include "cli/number_range.h"
 #include "cli/process.h"
 #include "cli/render/picture_numbers.h"
 #include "core/base/csv_table.h"
@@ -31,42 +32,25 @@ namespace {
 
 constexpr double k_max_axis_values = 1000;
 
-/// The numbers of "first:last:step"; none if `text` is something else.
-std::optional<std::array<double, 3>> range_in(std::string_view text) {
-    std::array<double, 3> numbers{};
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const std::size_t end = text.find(':');
-        const bool is_last = i + 1 == numbers.size();
-        if ((end == std::string_view::npos) != is_last) return std::nullopt;
-        if (parse_number(text.substr(0, end), numbers[i]) != NumberText::number)
-            return std::nullopt;
-        if (!is_last) text.remove_prefix(end + 1);
-    }
-    return numbers;
-}
-
 }  // namespace
 
 std::optional<ValueAxis> sweep_axis(const std::string& override) {
     const std::size_t equals = end_of_path(override);
     if (equals == std::string::npos) return std::nullopt;
-    const auto range = range_in(std::string_view(override).substr(equals + 1));
+    const auto range = number_range_in(std::string_view(override).substr(equals + 1));
     if (!range) return std::nullopt;
-    const auto [first, last, step] = *range;
     const auto fail = [&](const char* what) {
         throw UsageError(fmt::format("--set {}: {}", printable(override, 200), what));
     };
-    if (step == 0) fail("the step is 0; give FIRST:LAST:STEP, such as -1.2:-0.2:0.2");
-    // Both ends are included even if their distance is a multiple of the step only up to rounding.
-    const double count = std::floor(std::abs((last - first) / step) + 1e-9) + 1;
+    if (range->step == 0) fail("the step is 0; give FIRST:LAST:STEP, such as -1.2:-0.2:0.2");
+    const double count = range->count();
     if (count > k_max_axis_values) fail("more than 1000 values; give a larger step");
     if (count < 2) fail("the step is larger than the range; give a smaller one");
     ValueAxis axis{override.substr(0, equals), {}};
-    const double signed_step = std::copysign(step, last - first);
     for (int i = 0; i < static_cast<int>(count); ++i) {
         // Rounded to the decimal number that is meant: 0.3, not 0.30000000000000004.
         double value = 0;
-        parse_number(fmt::format("{:.12g}", first + i * signed_step), value);
+        parse_number(fmt::format("{:.12g}", range->at(i)), value);
         axis.values.push_back(value);
     }
     return axis;
