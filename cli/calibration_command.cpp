@@ -80,11 +80,7 @@ Options calibration_options(CalibrationArguments& a) {
 /// The fraction of covered pixels is sampled at this many positions along each side.
 constexpr int k_looks = 256;
 
-double angle_between(const Vector3& a, const Vector3& b) {
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-}
-
-/// The angle from the ray at `from` to the last ray on the line to `to`; 0 without a ray at `from`.
+/// The angle from the ray at `from` to the last one on the way to `to`; 0 without a ray at `from`.
 /// Summed in steps, so that it may exceed 180 degrees.
 template <class Direction>
 double reach(const Direction& direction, const ImagePoint& from, const ImagePoint& to) {

@@ -214,8 +214,7 @@ void SnowLighting::radiance(const Point3& x, const Ray& ray, double distance,
                 deep_shadows_[j]->columns(std::span<const Point3>(&x, 1), column);
             add(column, to_camera);
         }
-        const double psi = std::atan2(glm::length(glm::cross(from_lamp, ray.direction)),
-                                      -glm::dot(from_lamp, ray.direction));
+        const double psi = angle_between(from_lamp, -ray.direction);
         const double factor = relative / lamp.spread(radius) * LambertSphere::at(psi);
         for (std::size_t b = 0; b < radiance.size(); ++b)
             radiance[b] += factor * lamp.axis_intensity()[b] *

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <glm/glm.hpp>
 #include <numbers>
 
@@ -45,6 +46,12 @@ inline Point3 at_origin_plus(const Vector3& v) {
 
 inline double distance(const Point3& a, const Point3& b) {
     return glm::length(a - b);
+}
+
+/// The angle between two vectors of any lengths [rad], 0 to pi: exact near both ends, where an
+/// arc cosine is not.
+inline double angle_between(const Vector3& a, const Vector3& b) {
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 /// An affine map between two named spaces; name variables `target_from_source`.

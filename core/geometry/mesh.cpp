@@ -60,7 +60,7 @@ Vector3 vector_at(const std::vector<float>& values, std::size_t at) {
 /// The angle of a triangle at its corner `k`.
 double angle_at(const std::array<Vector3, 3>& points, std::size_t k) {
     const Vector3 a = points[(k + 1) % 3] - points[k], b = points[(k + 2) % 3] - points[k];
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
+    return angle_between(a, b);
 }
 
 struct Sums {

@@ -20,9 +20,7 @@ DirectionCone DirectionCone::widened(double angle) const {
 
 bool DirectionCone::includes(const DirectionCone& other) const {
     if (has_all() || other.has_all()) return has_all();
-    const double apart =
-        std::atan2(glm::length(glm::cross(axis, other.axis)), glm::dot(axis, other.axis));
-    return apart + std::acos(other.cosine) <= std::acos(cosine) + 1e-12;
+    return angle_between(axis, other.axis) + std::acos(other.cosine) <= std::acos(cosine) + 1e-12;
 }
 
 namespace {

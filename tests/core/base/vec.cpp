@@ -31,6 +31,14 @@ TEST(Vec, SumsAndDifferences) {
     EXPECT_EQ(at_origin_plus(from_origin(a)), a);
 }
 
+TEST(Vec, AnglesAreExactNearTheirEnds) {
+    const Vector3 x{2, 0, 0};
+    EXPECT_EQ(angle_between(x, {3, 0, 0}), 0);
+    EXPECT_EQ(angle_between(x, {-3, 0, 0}), std::numbers::pi);
+    EXPECT_DOUBLE_EQ(angle_between(x, {0, 0, 5}), std::numbers::pi / 2);
+    EXPECT_DOUBLE_EQ(angle_between(x, {1, 1e-9, 0}), 1e-9);  // whose cosine rounds to 1
+}
+
 TEST(Vec, ComponentsByAxis) {
     Point3 p{1, 2, 3};
     for (int axis = 0; axis < 3; ++axis) {
