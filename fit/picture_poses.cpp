@@ -9,6 +9,7 @@
 
 #include "core/base/csv_table.h"
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/json.h"
 #include "core/base/text.h"
 #include "core/scene/pose_file.h"
@@ -17,10 +18,6 @@ namespace uw {
 
 namespace {
 
-bool is_file(const std::filesystem::path& file) {
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(file, ignored);
-}
 bool is_folder(const std::filesystem::path& file) {
     std::error_code ignored;
     return std::filesystem::is_directory(file, ignored);

@@ -198,11 +198,6 @@ void OutputCheck::take_outputs(const OutputFiles& files) {
 
 namespace {
 
-bool is_file(const fs::path& file) {
-    std::error_code ignored;
-    return fs::is_regular_file(file, ignored);
-}
-
 void require_place(const char* option, const fs::path& name) {
     if (name.empty() || differs_by_frame(name)) return;
     throw UsageError(

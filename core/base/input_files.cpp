@@ -383,6 +383,11 @@ bool is_input(const fs::path& file) {
     return false;
 }
 
+bool is_file(const fs::path& file) {
+    std::error_code ignored;
+    return fs::is_regular_file(file, ignored);
+}
+
 namespace {
 
 // Files are read in parts, each as long as all previous ones together.

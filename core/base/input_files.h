@@ -114,9 +114,12 @@ std::vector<std::filesystem::path> inputs_outside(const std::filesystem::path& f
 /// Whether `file` is one of those, by whatever name, symbolic or hard link. Thread safe.
 bool is_input(const std::filesystem::path& file);
 
-/// Describes a file that is not the expected text, by its first bytes or else by its name, and how
-/// to use it, to follow "...: ": "is a VDB volume, not a valid scene; ..."; "" if it is not known.
-/// `noun`: what was expected, as for read_text_file.
+/// Whether a file of this name exists; a folder is none, nor is what cannot be looked at.
+bool is_file(const std::filesystem::path& file);
+
+/// What a file is that is not the text expected, by its first bytes or else by its name, and what
+/// to do with it, to follow "...: ": "is a VDB volume, not a valid scene; ..."; "" if nothing
+/// tells. `noun`: what was expected, as for read_text_file.
 std::string other_format(std::string_view bytes, const std::filesystem::path& file,
                          std::string_view noun);
 

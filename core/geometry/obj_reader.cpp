@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/base/error.h"
+#include "core/base/input_files.h"
 #include "core/base/text.h"
 #include "core/base/vector_math.h"
 #include "core/geometry/mesh_text.h"
@@ -28,11 +29,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t k_max_names = 6;  // of a warning
-
-bool is_file(const fs::path& file) {
-    std::error_code status;
-    return fs::is_regular_file(file, status);
-}
 
 /// A name as some other system may have written it.
 fs::path path_of(std::string name) {

@@ -43,6 +43,16 @@ TEST_F(InputFiles, AreKnownByEveryName) {
     EXPECT_FALSE(is_input(folder_ / "missing"));
 }
 
+TEST_F(InputFiles, AreNoFolders) {
+    EXPECT_TRUE(is_file(write("scene.yaml")));
+    fs::create_symlink("scene.yaml", folder_ / "soft");
+    EXPECT_TRUE(is_file(folder_ / "soft"));
+    EXPECT_FALSE(is_file(folder_));
+    EXPECT_FALSE(is_file(folder_ / "missing"));
+    EXPECT_FALSE(is_file(folder_ / "scene.yaml" / "within"));
+    EXPECT_FALSE(is_file(""));
+}
+
 TEST_F(InputFiles, AreNamedIfTheyLieElsewhere) {
     for (const char* sub : {"scenes", "scenes/meshes", "scenes of others"})
         fs::create_directory(folder_ / sub);
