@@ -17,6 +17,7 @@
 #include "core/base/text.h"
 #include "core/light/medium.h"
 #include "core/scene/render_desc.h"
+#include "core/scene/yaml_document.h"
 #include "media/volumes/fluid_domain.h"
 #include "media/volumes/grid_field.h"
 #include "media/volumes/load_volumes.h"
@@ -67,9 +68,7 @@ std::string quoted_name(const std::string& text) {
     if (plain && lower_case(text) != "null" && lower_case(text) != "true" &&
         lower_case(text) != "false")
         return text;
-    std::string result = "'";
-    for (const char c : text) result += c == '\'' ? "''" : std::string(1, c);
-    return result + "'";
+    return in_yaml_quotes(text);
 }
 
 std::string list(const std::vector<std::string>& names) {
@@ -220,7 +219,7 @@ double longest_side(const Bounds& b) {
 }
 
 // Farther from the origin than a scene is wide [m].
-constexpr double k_far = 1000;
+constexpr double k_far_off = 1000;
 
 bool lacks(const VdbInspection& inspection, const std::string& part) {
     return std::ranges::none_of(inspection.grids, [&](const GridInspection& grid) {
@@ -410,7 +409,7 @@ void say_place(const VdbInspection& inspection, bool has_size, VdbAdvice& advice
             "Without a size its place means nothing, either: the block puts it onto y = 0.");
     }
     const Vector3 centre = from_origin(placing(advice) * advice.bounds.center());
-    if (!(glm::length(centre) > k_far) || !std::isfinite(glm::length(centre))) return;
+    if (!(glm::length(centre) > k_far_off) || !std::isfinite(glm::length(centre))) return;
     advice.translate -= glm::round(centre);
     advice.lines.push_back(fmt::format(
         "It lies {:.3g} m from the origin, as if in the coordinates of a map: the block brings it "
@@ -502,11 +501,6 @@ void say_frame_rate(const VdbInspection& inspection, VdbAdvice& advice) {
 }
 
 }  // namespace
-
-std::string lower_case(std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-}
 
 int concentration_likelihood(const std::string& name) {
     const std::string text = lower_case(name);

@@ -38,11 +38,8 @@ struct VdbAdvice {
     std::string scene;  // YAML, a whole scene of these and the volume; empty as `volumes` is
 };
 
-/// ASCII letters in lower case, for names in which case means nothing.
-std::string lower_case(std::string text);
-
-/// How likely a grid of this name contains a concentration: 0 certainly not, 1 something else from
-/// which a concentration can be estimated (heat, flames), 2 unknown, 3 likely, 4 a density.
+/// How likely a grid of this name holds a concentration: 0 certainly not, 1 something else from
+/// which a concentration can be guessed (heat, flames), 2 unknown, 3 likely, 4 a density.
 int concentration_likelihood(const std::string& name);
 
 /// One frame of a sequence, with what is in it.

@@ -500,17 +500,13 @@ constexpr auto k_key_order = std::to_array<std::string_view>(
 bool is_word_of_yaml(std::string_view text) {
     constexpr auto k_words = std::to_array<std::string_view>(
         {"null", "~", "true", "false", "yes", "no", "on", "off", "y", "n"});
-    std::string lower(text);
-    std::ranges::transform(lower, lower.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return std::ranges::find(k_words, lower) != k_words.end();
+    return std::ranges::find(k_words, lower_case(text)) != k_words.end();
 }
 
 bool is_plain_character(char c) {
     const auto byte = static_cast<unsigned char>(c);
-    return byte >= 0x80 || (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') ||
-           (c >= 'A' && c <= 'Z') || std::string_view("_-./+ ()%$#").find(c) != std::string::npos;
+    return byte >= 0x80 || is_digit(c) || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+           std::string_view("_-./+ ()%$#").find(c) != std::string::npos;
 }
 
 /// Whether `text` may stand without quotes, in and outside brackets.
@@ -548,8 +544,9 @@ std::string scalar_text(const ConfigNode& node, const FlowStyle& style) {
     return quoted_if_needed(node.scalar, style.is_json);
 }
 
-/// By rank.
-std::vector<const ConfigNode::Entry*> in_order(const ConfigNode& map) {
+}  // namespace
+
+std::vector<const ConfigNode::Entry*> entries_by_rank(const ConfigNode& map) {
     std::vector<const ConfigNode::Entry*> entries;
     entries.reserve(map.entries.size());
     for (const ConfigNode::Entry& entry : map.entries) entries.push_back(&entry);
@@ -557,7 +554,14 @@ std::vector<const ConfigNode::Entry*> in_order(const ConfigNode& map) {
     return entries;
 }
 
-}  // namespace
+std::string in_yaml_quotes(std::string_view text) {
+    std::string result = "'";
+    for (const char c : text) {
+        if (c == '\'') result += c;
+        result += c;
+    }
+    return result + "'";
+}
 
 std::string quoted_if_needed(std::string_view text, bool is_json) {
     if (is_json) return in_double_quotes(text);
@@ -565,12 +569,7 @@ std::string quoted_if_needed(std::string_view text, bool is_json) {
     const bool has_control =
         std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
     if (has_control) return in_double_quotes(text);
-    std::string result = "'";
-    for (const char c : text) {
-        if (c == '\'') result += c;
-        result += c;
-    }
-    return result + "'";
+    return in_yaml_quotes(text);
 }
 
 std::string flow_text(const ConfigNode& value, const FlowStyle& style) {
@@ -590,7 +589,7 @@ std::string flow_text(const ConfigNode& value, const FlowStyle& style) {
             break;
     }
     std::string text = "{";
-    for (const ConfigNode::Entry* entry : in_order(value))
+    for (const ConfigNode::Entry* entry : entries_by_rank(value))
         text += (text.size() > 1 ? ", " : "") + quoted_if_needed(entry->key, style.is_json) + ": " +
                 flow_text(entry->value, style);
     return text + "}";

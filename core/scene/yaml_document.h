@@ -110,4 +110,10 @@ std::string flow_text(const ConfigNode& value, const FlowStyle& style = {});
 /// last.
 std::size_t key_rank(std::string_view key);
 
+/// The entries of a map by the ranks of their keys, those of one rank as they are written.
+std::vector<const ConfigNode::Entry*> entries_by_rank(const ConfigNode& map);
+
+/// A text in single quotes.
+std::string in_yaml_quotes(std::string_view text);
+
 }  // namespace uw

@@ -250,10 +250,7 @@ std::vector<const ConfigNode::Entry*> in_order(const ConfigNode& map, const Conf
         }
         return best;
     };
-    std::vector<const ConfigNode::Entry*> entries;
-    entries.reserve(map.entries.size());
-    for (const ConfigNode::Entry& entry : map.entries) entries.push_back(&entry);
-    std::ranges::stable_sort(entries, {}, [](const auto* entry) { return key_rank(entry->key); });
+    std::vector<const ConfigNode::Entry*> entries = entries_by_rank(map);
     std::ranges::stable_sort(entries, {}, place);
     return entries;
 }
