@@ -234,9 +234,7 @@ template <class Visit>
 void for_each_line(std::string_view text, Visit visit) {
     int number = 0;
     while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
-        const std::string_view line = text.substr(0, end);
-        text.remove_prefix(std::min(end + 1, text.size()));
+        const std::string_view line = take_line(text);
         ++number;
         const std::size_t first = line.find_first_not_of(" \t\r");
         if (first == std::string_view::npos || line[first] == '#') continue;
@@ -280,9 +278,11 @@ Calibration read_line(const Line& line) {
     return result;
 }
 
-std::string camera_line(const CameraDesc& camera, bool with_port) {
+}  // namespace
+
+std::string colmap_camera_line(std::size_t id, const CameraDesc& camera, bool with_port) {
     const ColmapParameters model = colmap_model_of(camera);
-    std::string line = fmt::format("1 {} {} {} {}", model.name, camera.width, camera.height,
+    std::string line = fmt::format("{} {} {} {} {}", id, model.name, camera.width, camera.height,
                                    fmt::join(model.values, " "));
     if (with_port && camera.port) {
         const ColmapParameters port = port_model_of(*camera.port);
@@ -290,8 +290,6 @@ std::string camera_line(const CameraDesc& camera, bool with_port) {
     }
     return line + "\n";
 }
-
-}  // namespace
 
 bool looks_like_colmap(std::string_view text) {
     bool result = false;
@@ -331,10 +329,10 @@ std::string write_colmap(const CameraDesc& camera) {
         "# Camera list with one line of data per camera:\n"
         "#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[] OPTIONAL[REFRAC_MODEL REFRAC_PARAMS[]]\n"
         "# Number of cameras: 1\n";
-    text += camera_line(camera, true);
+    text += colmap_camera_line(1, camera, true);
     if (camera.port)
         text += "# Stock COLMAP does not support ports. The camera alone, as it is in air:\n# " +
-                camera_line(camera, false);
+                colmap_camera_line(1, camera, false);
     return text;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -18,5 +20,7 @@ struct ColmapParameters {
 ColmapParameters colmap_model_of(const CameraDesc& camera);
 /// The model of a port, lengths in metres.
 ColmapParameters port_model_of(const PortDesc& port);
+/// The camera's line of COLMAP's cameras.txt, `with_port` with that of the refractive fork.
+std::string colmap_camera_line(std::size_t id, const CameraDesc& camera, bool with_port);
 
 }  // namespace uw

@@ -36,10 +36,13 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
     return text;
 }
 
-/// Text in single quotes for a POSIX shell.
-std::string in_quotes(const std::string& text) {
+}  // namespace
+
+std::string in_shell_quotes(const std::string& text) {
     return "'" + replaced(text, "'", R"('\'')") + "'";
 }
+
+namespace {
 
 std::string names_of(std::span<const Command> commands) {
     std::vector<std::string> names;
@@ -110,21 +113,22 @@ std::string zsh_specification(const Option& option, int position) {
                                : option.is_path() ? "_files"
                                                   : " ";
     if (option.is_positional())
-        return in_quotes(fmt::format("{}:{}:{}", position, option.names,
-                                     option.words.empty() ? "_files" : action));
+        return in_shell_quotes(fmt::format("{}:{}:{}", position, option.names,
+                                           option.words.empty() ? "_files" : action));
     const std::string value = option.is_flag() ? "" : fmt::format(":{}:{}", value_name, action);
     const std::vector<std::string> names = names_of(option);
     if (names.size() == 1)
-        return in_quotes(
+        return in_shell_quotes(
             fmt::format("{}{}[{}]{}", option.repeatable ? "*" : "", names.front(), help, value));
     return fmt::format("'({})'{{{}}}{}", fmt::join(names, " "), fmt::join(names, ","),
-                       in_quotes(fmt::format("[{}]{}", help, value)));
+                       in_shell_quotes(fmt::format("[{}]{}", help, value)));
 }
 
 std::string zsh_script(std::span<const Command> commands) {
     std::string summaries, cases;
     for (const Command& command : commands) {
-        summaries += fmt::format("        {}\n", in_quotes(command.name + ":" + command.summary));
+        summaries +=
+            fmt::format("        {}\n", in_shell_quotes(command.name + ":" + command.summary));
         cases += fmt::format("        {})\n            _arguments '--help[print help and exit]'",
                              command.name);
         int position = 0;

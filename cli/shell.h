@@ -10,6 +10,9 @@
 
 namespace uw {
 
+/// `text` in single quotes, for a POSIX shell.
+std::string in_shell_quotes(const std::string& text);
+
 /// The shells that completions are written for.
 inline constexpr std::array<std::string_view, 3> k_shells{"bash", "zsh", "fish"};
 

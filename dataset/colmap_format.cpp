@@ -31,17 +31,6 @@ struct Track {
     bool is_kept() const { return places.size() > 1; }
 };
 
-std::string camera_line(std::size_t id, const CameraDesc& camera) {
-    const ColmapParameters model = colmap_model_of(camera);
-    std::string line = fmt::format("{} {} {} {} {}", id, model.name, camera.width, camera.height,
-                                   fmt::join(model.values, " "));
-    if (camera.port) {
-        const ColmapParameters port = port_model_of(*camera.port);
-        line += fmt::format(" {} {}", port.name, fmt::join(port.values, " "));
-    }
-    return line + "\n";
-}
-
 bool has_ports(const CompleteSequence& sequence) {
     return std::ranges::any_of(
         sequence.records, [](const ViewRecord& record) { return record.camera.port.has_value(); });
@@ -60,8 +49,9 @@ std::string cameras_text(const CompleteSequence& sequence, bool with_port) {
             "# images.txt are seen through the port; ../refractive/cameras.txt describes it.\n",
             sequence.definition.pinhole_fit ? "fitted to the rays in water" : "in air");
     for (std::size_t camera = 0; camera < count; ++camera)
-        text += camera_line(camera + 1,
-                            with_port ? sequence.at(0, camera).camera : sequence.portless(camera));
+        text += colmap_camera_line(
+            camera + 1, with_port ? sequence.at(0, camera).camera : sequence.portless(camera),
+            true);
     return text;
 }
 

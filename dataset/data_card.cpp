@@ -15,13 +15,6 @@ namespace uw {
 
 namespace {
 
-template <class T, std::size_t N>
-std::string name_of(T value, const std::array<std::pair<std::string_view, T>, N>& names) {
-    for (const auto& [name, known] : names)
-        if (known == value) return std::string(name);
-    return {};
-}
-
 Json water_json(const SceneDesc& scene) {
     const WaterModel water = build_water_model(scene.water, scene.volumes);
     Json a = Json::array(), b = Json::array(), c = Json::array(), phases = Json::array();
@@ -189,9 +182,9 @@ Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out) {
             {"lamps", lamps_json(first)},
             {"geometry", std::move(geometry)},
             {"frames_per_second", first.render.fps},
-            {"integrator", name_of(first.render.integrator, k_integrator_names)},
-            {"scattering", name_of(scattering_of(first.render), k_scattering_names)},
-            {"quality", name_of(first.render.quality, k_quality_names)},
+            {"integrator", word_of(first.render.integrator, k_integrator_names)},
+            {"scattering", word_of(scattering_of(first.render), k_scattering_names)},
+            {"quality", word_of(first.render.quality, k_quality_names)},
             {"light_left_out", left_out_json(first, left_out)},
             {"samples", samples_of(first.render)}};
 }

@@ -9,6 +9,7 @@
 #include "cli/image_choice.h"
 #include "cli/render/frame_sequence.h"
 #include "cli/render/run_scenes.h"
+#include "cli/shell.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
@@ -223,9 +224,7 @@ std::string shell_word(const std::string& text) {
     constexpr const char* k_plain =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+%@";
     if (!text.empty() && text.find_first_not_of(k_plain) == std::string::npos) return text;
-    std::string word = "'";
-    for (const char c : text) word += c == '\'' ? "'\\''" : std::string(1, c);
-    return word + "'";
+    return in_shell_quotes(text);
 }
 
 std::string set_options(const DatasetArguments& a, const DatasetDefinition& d) {
