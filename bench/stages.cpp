@@ -54,7 +54,7 @@ class StageRun {
     void render(const PixelRenderer& pixels, const LayerPlan& plan, Film& film,
                 const std::function<void(Rendering&)>& run) {
         const BandColour colour(desc().water.bands_nm);
-        const StageProgressCallback progress = [](const std::string&, double) {};
+        const StageProgressCallback progress = [](Stage, double) {};
         ImageProgress reached;
         Rendering rendering{.desc = desc(),
                             .pixels = pixels,

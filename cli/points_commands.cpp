@@ -247,7 +247,7 @@ ImageScene observed_scene(const PointsArguments& a) {
 
 AssembledScene with_surfaces(const ImageScene& scene) {
     SceneCache cache;
-    AssembledScene assembled = assemble_scene(scene, cache, [](const std::string& /*stage*/) {});
+    AssembledScene assembled = assemble_scene(scene, cache, [](Stage /*stage*/) {});
     for (const std::string& warning : assembled.geometry_warnings)
         print_message(fmt::format("warning: {}\n", warning));
     return assembled;

@@ -441,7 +441,7 @@ class RendererObject : public RunClient {
         const PixelWindow window =
             wanted.options.window.value_or(PixelWindow{0, 0, camera.width, camera.height});
         std::vector<float> values = differentiate(itself, progress, [&](Renderer& renderer) {
-            return scene_derivatives(renderer, changed, derived(wanted), told("derivatives"));
+            return scene_derivatives(renderer, changed, derived(wanted), told(Stage::derivatives));
         });
         return owned(std::move(values),
                      {static_cast<py::ssize_t>(changes.size()), window.height(), window.width(),
@@ -463,7 +463,7 @@ class RendererObject : public RunClient {
                                              static_cast<std::size_t>(weights.size()));
         SceneGradient found = differentiate(itself, progress, [&](Renderer& renderer) {
             return scene_gradient(renderer, {changed, volumes, textures}, values, derived(wanted),
-                                  told("derivatives"));
+                                  told(Stage::derivatives));
         });
         py::list by_voxel, by_texel;
         for (std::size_t i = 0; i < volumes.size(); ++i) {
@@ -515,8 +515,8 @@ class RendererObject : public RunClient {
         }
         const std::vector<std::string>& names = wanted_->derivatives;
         if (names.empty()) return {};
-        const std::vector<float> all =
-            named_derivatives(engine_->renderer(), names, derived(*wanted_), told("derivatives"));
+        const std::vector<float> all = named_derivatives(
+            engine_->renderer(), names, derived(*wanted_), told(Stage::derivatives));
         const std::size_t each = all.size() / names.size();
         for (std::size_t i = 0; i < names.size(); ++i)
             image_->derivatives[names[i]].assign(&all[i * each], &all[i * each] + each);
@@ -527,7 +527,7 @@ class RendererObject : public RunClient {
         // The image's report has all warnings; Python gives them once it is there.
     }
 
-    void tell(const std::string& stage, double fraction) override { task_.tell(stage, fraction); }
+    void tell(Stage stage, double fraction) override { task_.tell(stage, fraction); }
 
   private:
     static DerivativeOptions derived(const Wanted& wanted) {
@@ -543,7 +543,7 @@ class RendererObject : public RunClient {
         return changed;
     }
 
-    ProgressCallback told(const char* stage) {
+    ProgressCallback told(Stage stage) {
         return [this, stage](double fraction) { tell(stage, fraction); };
     }
 
@@ -593,7 +593,7 @@ class RendererObject : public RunClient {
         const py::gil_scoped_acquire acquire;
         if (progress.is_none()) return;
         for (const auto& [stage, fraction] : news)
-            if (progress(stage, fraction).is(py::bool_(false)))
+            if (progress(name_of(stage), fraction).is(py::bool_(false)))
                 throw Interrupted("render: stopped by its progress callback");
     }
 

@@ -22,7 +22,7 @@ std::vector<WatchedTask::News> WatchedTask::take_news() {
     return std::exchange(news_, {});
 }
 
-void WatchedTask::tell(const std::string& stage, double fraction) {
+void WatchedTask::tell(Stage stage, double fraction) {
     const std::lock_guard lock(mutex_);
     const bool goes_on =
         !news_.empty() && news_.back().stage == stage && fraction > 0 && news_.back().fraction > 0;

@@ -4,8 +4,9 @@
 #include <condition_variable>
 #include <functional>
 #include <mutex>
-#include <string>
 #include <vector>
+
+#include "core/base/progress.h"
 
 namespace uw {
 
@@ -14,7 +15,7 @@ namespace uw {
 class WatchedTask {
   public:
     struct News {
-        std::string stage;
+        Stage stage{};
         double fraction = 0;
     };
     /// Called on the calling thread every k_interval and at the end, with what was told since. What
@@ -25,7 +26,7 @@ class WatchedTask {
     void run(const std::function<void()>& work, const Watch& watch);
 
     /// For the work, from any of its threads: how far a stage is.
-    void tell(const std::string& stage, double fraction);
+    void tell(Stage stage, double fraction);
 
   private:
     std::vector<News> take_news();

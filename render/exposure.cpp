@@ -300,6 +300,10 @@ class ReachedByParts {
 
 }  // namespace
 
+double fraction_of_pixels(Stage stage, double fraction) {
+    return stage == Stage::render ? fraction : stage == Stage::forward_scatter ? 1 : 0;
+}
+
 void render_exposure(const Exposure& exposure, const AssembledScene& scene, SceneCache& cache,
                      PassList& passes, const LightOfPart& light_of_part, Rendering& rendering) {
     const SceneDesc& desc = scene.desc();
@@ -337,11 +341,10 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
     };
     const bool truth_differs = exposure.is_rolling() && exposure.moves_surfaces();
     for (int k = 0; k < parts; ++k) {
-        const StageProgressCallback tell = [&](const std::string& stage, double fraction) {
-            const double done = stage == "render" ? fraction : stage == "forward scatter" ? 1 : 0;
-            rendering.progress("render", (k + done) / parts);
+        const StageProgressCallback tell = [&](Stage stage, double fraction) {
+            rendering.progress(Stage::render, (k + fraction_of_pixels(stage, fraction)) / parts);
         };
-        tell("", 0);
+        tell(Stage::render, 0);
         throw_if_stopped();
         const AssembledScene part = exposure.part(k, cache);
         const DeepShadows light = light_of_part(part);

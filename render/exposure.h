@@ -66,6 +66,10 @@ std::shared_ptr<const CameraMotion> camera_motion(const ImageScene& scene, const
 /// Returns the camera of an image for ground truth: each row is that of the middle of its exposure.
 Camera camera_of_truth(const ImageScene& scene);
 
+/// Returns the fraction of an image's pixels that is done when its passes report this progress of a
+/// stage: forward scatter follows the pixels, all other stages precede them.
+double fraction_of_pixels(Stage stage, double fraction);
+
 /// Makes the deep shadow maps of a part of an exposure, if its integrator needs any.
 using LightOfPart = std::function<DeepShadows(const AssembledScene& part)>;
 

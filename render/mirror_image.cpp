@@ -45,8 +45,8 @@ void run_light_passes(const AssembledScene& scene, PassList& passes, Rendering& 
     pixels.set_weight([&](int x, int y) { return view.arriving(x, y); });
     Film film(rendering.film.width(), rendering.film.height(), rendering.film.window(),
               rendering.film.channel_names());
-    const StageProgressCallback progress = [&](const std::string& stage, double fraction) {
-        rendering.progress("reflection", stage == "render" ? fraction : 0);
+    const StageProgressCallback progress = [&](Stage stage, double fraction) {
+        rendering.progress(Stage::reflection, stage == Stage::render ? fraction : 0);
     };
     ImageProgress reached;
     Rendering mirrored{.desc = rendering.desc,

@@ -64,7 +64,7 @@ std::optional<std::string> saturation_warning(const CameraDesc& camera, const La
 
 }  // namespace
 
-void Renderer::begin(const std::string& stage) const {
+void Renderer::begin(Stage stage) const {
     progress_(stage, 0);
     throw_if_stopped();
 }
@@ -79,8 +79,8 @@ void Renderer::set_scene(ImageScene scene) {
 void Renderer::build() {
     if (!scene_)
         scene_ = assemble_scene(
-            *image_, cache_, [this](const std::string& stage) { begin(stage); },
-            [this](double fraction) { progress_("particles", fraction); });
+            *image_, cache_, [this](Stage stage) { begin(stage); },
+            [this](double fraction) { progress_(Stage::particles, fraction); });
 }
 
 const AssembledScene& Renderer::assemble() {
@@ -101,8 +101,8 @@ DeepShadows Renderer::light_of(const AssembledScene& scene, const ProgressCallba
 const DeepShadows& Renderer::splat() {
     build();
     if (light_.empty()) {
-        begin("splat");
-        light_ = light_of(*scene_, [this](double fraction) { progress_("splat", fraction); });
+        begin(Stage::splat);
+        light_ = light_of(*scene_, [this](double fraction) { progress_(Stage::splat, fraction); });
     }
     return light_;
 }
@@ -209,9 +209,9 @@ void Renderer::warn_of_multiple_error() {
 
 StageProgressCallback Renderer::progress_of_group(std::size_t group, std::size_t groups) const {
     if (groups == 1) return progress_;
-    return [this, group, groups](const std::string& stage, double fraction) {
-        const double done = stage == "render" ? fraction : stage == "forward scatter" ? 1 : 0;
-        progress_("render", (static_cast<double>(group) + done) / static_cast<double>(groups));
+    return [this, group, groups](Stage stage, double fraction) {
+        const double done = fraction_of_pixels(stage, fraction);
+        progress_(Stage::render, (static_cast<double>(group) + done) / static_cast<double>(groups));
     };
 }
 
@@ -304,7 +304,7 @@ const Film& Renderer::render(const RenderOptions& options) {
     if (needs_.light)
         splat();
     else
-        begin("splat");
+        begin(Stage::splat);
     is_film_clear_ = false;
     PassList passes = std::exchange(passes_, {});  // frees their memory at the end
     render_film(options, passes);

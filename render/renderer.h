@@ -69,7 +69,7 @@ struct RenderReport : ImageProgress {
 /// renderer stays usable, and the same image can be requested again.
 class Renderer {
   public:
-    explicit Renderer(StageProgressCallback progress = [](const std::string&, double) {})
+    explicit Renderer(StageProgressCallback progress = [](Stage, double) {})
         : progress_(std::move(progress)) {}
 
     /// Sets the scene of the following images. Loads nothing yet.
@@ -123,7 +123,7 @@ class Renderer {
     /// @}
 
   private:
-    void begin(const std::string& stage) const;
+    void begin(Stage stage) const;
     void build();
     void fit_film(const RenderOptions& options);
     void count_work();

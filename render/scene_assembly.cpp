@@ -253,12 +253,12 @@ AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
         if (scene.snow->warning) scene.warnings.push_back(*scene.snow->warning);
     }
     cache.keep_only(desc, scene.water);
-    begin_stage("volumes");
+    begin_stage(Stage::volumes);
     VolumeSet volumes = cache.volumes(desc, scene.water);
     scene.volumes = std::move(volumes.volumes);
     scene.field = std::move(volumes.field);
     report_volumes(scene);
-    begin_stage("geometry");
+    begin_stage(Stage::geometry);
     const SurfaceSet& built = cache.surfaces(desc);
     scene.surfaces = scene.shadow_casters = built.surfaces;
     scene.geometry_warnings = built.warnings;

@@ -14,8 +14,8 @@ namespace uw {
 
 class SceneCache;
 
-/// Called with the name of each stage as it begins.
-using StageCallback = std::function<void(const std::string& stage)>;
+/// Called with each stage as it begins.
+using StageCallback = std::function<void(Stage stage)>;
 
 /// Loads and builds the parts of an image's scene, apart from those in `cache`, which keeps them
 /// for the next scene; slabs are not placed. The result is the same to the bit as with an empty

@@ -14,9 +14,9 @@
 namespace uw {
 
 RunEngine::RunEngine()
-    : renderer_([this](const std::string& stage, double fraction) { tell(stage, fraction); }) {}
+    : renderer_([this](Stage stage, double fraction) { tell(stage, fraction); }) {}
 
-void RunEngine::tell(const std::string& stage, double fraction) {
+void RunEngine::tell(Stage stage, double fraction) {
     const std::lock_guard lock(mutex_);
     if (writing_ && writing_->is_done()) finish_writing();
     client_->tell(stage, fraction);

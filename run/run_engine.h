@@ -107,7 +107,7 @@ class RunClient {
     virtual bool reads_light_note() const { return false; }
     /// How far a stage of the image is (StageProgressCallback); from any thread, one call at a
     /// time.
-    virtual void tell(const std::string& stage, double fraction) = 0;
+    virtual void tell(Stage stage, double fraction) = 0;
 };
 
 /// Goes through the images of a job: reads the scene of each, renders it, hands it to the command
@@ -151,7 +151,7 @@ class RunEngine {
     void warn_of_image();
 
   private:
-    void tell(const std::string& stage, double fraction);
+    void tell(Stage stage, double fraction);
     void render_all(const Job& job);
     void render(std::size_t place);
     FinishedImage finished(const WantedImage& wanted);

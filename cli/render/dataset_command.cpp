@@ -63,13 +63,13 @@ class ViewClient : public RunClient {
     ViewClient(std::size_t count, ProgressForm form)
         : progress_("views", "views", static_cast<double>(count), form) {}
 
-    void tell(const std::string& stage, double fraction) override {
-        // This stage takes nearly all the time of a view.
-        const double rendered = stage == "render" ? fraction : 0;
+    void tell(Stage stage, double fraction) override {
+        // Nearly all the time that a view takes is this stage.
+        const double share = stage == Stage::render ? fraction : 0;
         // Computing species may take longer than all views.
         progress_.update(
-            engine_.clock().progress(rendered),
-            stage == "particles" ? fmt::format("particles: {:.0f} %", 100 * fraction) : "");
+            engine_.clock().share_done(share),
+            stage == Stage::particles ? fmt::format("particles: {:.0f} %", 100 * fraction) : "");
     }
 
   protected:

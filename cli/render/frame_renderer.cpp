@@ -101,19 +101,20 @@ void FrameRenderer::warn(std::size_t place, const std::string& line) {
         fmt::format("warning: {}{}\n", place == 0 ? "" : place_in_run(frames_[place]), line));
 }
 
-void FrameRenderer::tell(const std::string& stage, double fraction) {
+void FrameRenderer::tell(Stage stage, double fraction) {
     if (stage != stage_) begin_stage(stage);
     const PathAccuracy& paths = engine_.renderer().report().paths;
-    if (progress_) progress_->update(fraction, stage == "render" ? describe(paths) : "");
+    if (progress_) progress_->update(fraction, stage == Stage::render ? describe(paths) : "");
 }
 
-void FrameRenderer::begin_stage(const std::string& stage) {
+void FrameRenderer::begin_stage(Stage stage) {
     stage_ = stage;
     progress_.reset();  // ends the line of the previous stage
+    const std::string name(name_of(stage));
     const SequenceClock& clock = engine_.clock();
     const auto show = [&](const char* unit, double scale) {
         progress_ = std::make_unique<Progress>(
-            clock.label(measuring_.empty() ? stage : measuring_ + ": " + stage), unit, scale,
+            clock.label(measuring_.empty() ? name : measuring_ + ": " + name), unit, scale,
             arguments_.progress, clock.seconds_left());
     };
     if (!measuring_.empty()) {
@@ -121,15 +122,16 @@ void FrameRenderer::begin_stage(const std::string& stage) {
         return;
     }
     const Renderer& renderer = engine_.renderer();
-    if (stage == "splat") show("lamps", static_cast<double>(renderer.scene().desc().lamps.size()));
+    if (stage == Stage::splat)
+        show("lamps", static_cast<double>(renderer.scene().desc().lamps.size()));
     const bool paths = integrator_kind(renderer.scene().desc().render.integrator).traces_paths;
-    if (stage == "render" && paths)
-        show("", 1);  // the number of paths may not be known yet
-    else if (stage == "render" || stage == "forward scatter")
+    if (stage == Stage::render && paths)
+        show("", 1);  // of how many paths may not be known yet
+    else if (stage == Stage::render || stage == Stage::forward_scatter)
         show("Mpx", 1e-6 * static_cast<double>(renderer.report().pixels));
-    if (stage == "multiple scattering" || stage == "particles") show("", 1);
-    if (stage == "multiple scattering" || stage == "render") begin_orderly_stop();
-    if (stage != "forward scatter") stats_.begin_stage(stage);  // that one is part of "render"
+    if (stage == Stage::multiple_scattering || stage == Stage::particles) show("", 1);
+    if (stage == Stage::multiple_scattering || stage == Stage::render) begin_orderly_stop();
+    if (stage != Stage::forward_scatter) stats_.begin_stage(name);  // which is part of "render"
 }
 
 WantedImage FrameRenderer::want(std::size_t place, ImageScene& scene) {
@@ -151,7 +153,7 @@ WantedImage FrameRenderer::want(std::size_t place, ImageScene& scene) {
                           layers_to_measure(scene) + (arguments_.parts.object.empty() ? "" : ",id");
         measured_ = scene;
     }
-    stage_.clear();
+    stage_.reset();
     return {options_, !frame.files.sensor.empty()};
 }
 
@@ -258,7 +260,7 @@ std::vector<PartNumbers> FrameRenderer::measure(const FinishedImage& image) {
     const std::size_t lamps = scene.lamps.size();
     for (PartNumbers& of_lamp :
          lamp_numbers(engine_.renderer(), *measured_, options_, parts, [&](std::size_t number) {
-             stage_.clear();
+             stage_.reset();
              measuring_ = number == 0 ? "numbers without lamps"
                                       : fmt::format("numbers of lamp {} of {}", number, lamps);
          }))

@@ -40,13 +40,13 @@ class FrameRenderer : public RunClient {
     void loaded(std::size_t place) override;
     ImageWork take(std::size_t place, FinishedImage image) override;
     void warn(std::size_t place, const std::string& line) override;
-    void tell(const std::string& stage, double fraction) override;
+    void tell(Stage stage, double fraction) override;
 
   private:
     /// An image that is being written.
     struct Written;
 
-    void begin_stage(const std::string& stage);
+    void begin_stage(Stage stage);
     void count_work(const RenderReport& report);
     void write_irradiance(OutputFile& out);
     /// Measures the image, lamp by lamp; the renderer's scene is then another.
@@ -62,7 +62,7 @@ class FrameRenderer : public RunClient {
     Done done_;
     RenderOptions options_;               // likewise, with what is measured
     std::optional<ImageScene> measured_;  // likewise, if it is measured
-    std::string stage_;
+    std::optional<Stage> stage_;          // that was told of last
     std::unique_ptr<Progress> progress_;  // of the stage
     std::string measuring_;               // what is rendered for its numbers only; empty: nothing
     RunEngine engine_;

@@ -174,8 +174,8 @@ class SweepRun : public RunClient {
         return std::move(sweep_);
     }
 
-    void tell(const std::string& stage, double fraction) override {
-        progress_(engine_.clock().progress(stage == "render" ? k_rendering * fraction : 0));
+    void tell(Stage stage, double fraction) override {
+        progress_(engine_.clock().share_done(stage == Stage::render ? k_rendering * fraction : 0));
     }
 
     WantedImage want(std::size_t /*place*/, ImageScene& scene) override {

@@ -107,8 +107,8 @@ void take_away_emission(LightLayers& light, const LightLayers& unlit) {
 
 PictureRenderer::PictureRenderer(PictureCallbacks callbacks)
     : callbacks_(std::move(callbacks)),
-      renderer_([this](const std::string& stage, double fraction) {
-          if (stage == "render" && callbacks_.progress)
+      renderer_([this](Stage stage, double fraction) {
+          if (stage == Stage::render && callbacks_.progress)
               callbacks_.progress(
                   quality_, (static_cast<double>(part_) + fraction) / static_cast<double>(parts_));
       }),

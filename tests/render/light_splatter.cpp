@@ -83,7 +83,7 @@ class LightReuse : public testing::Test {
 
   private:
     void assemble() {
-        scene_ = assemble_scene(SceneDesc(desc_), cache_, [](const std::string&) {});
+        scene_ = assemble_scene(SceneDesc(desc_), cache_, [](Stage) {});
         scene_->slabs = place_slabs(*scene_);
     }
 

@@ -52,9 +52,9 @@ TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
     Film film(8, 6, {0, 0, 8, 6}, plan.channel_names());
     std::vector<std::string> notes;
     std::atomic<bool> stop = false;
-    const StageProgressCallback progress = [&](const std::string& stage, double fraction) {
+    const StageProgressCallback progress = [&](Stage stage, double fraction) {
         EXPECT_EQ(fraction, 0);
-        notes.push_back("stage " + stage);
+        notes.push_back("stage " + std::string(name_of(stage)));
     };
     ImageProgress reached;
     Rendering rendering{.desc = desc_,
@@ -67,17 +67,17 @@ TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
                         .progress = progress,
                         .reached = reached};
     PassList passes;
-    passes.add<NotingPass>(notes, "one");
-    passes.add<NotingPass>(notes, "truth", Pass::Of::truth);
-    passes.add<NotingPass>(notes, "two");
+    passes.add<NotingPass>(notes, "snow");
+    passes.add<NotingPass>(notes, "reflection", Pass::Of::truth);
+    passes.add<NotingPass>(notes, "render");
     passes.run(Pass::Of::light, rendering);
-    EXPECT_EQ(notes, (std::vector<std::string>{"begin one", "begin two", "stage one", "run one",
-                                               "stage two", "run two"}));
+    EXPECT_EQ(notes, (std::vector<std::string>{"begin snow", "begin render", "stage snow",
+                                               "run snow", "stage render", "run render"}));
     notes.clear();
     stop = true;
     const StopScope scope(stop);
     EXPECT_THROW(passes.run(Pass::Of::truth, rendering), Interrupted);
-    EXPECT_EQ(notes, (std::vector<std::string>{"begin truth", "stage truth"}));
+    EXPECT_EQ(notes, (std::vector<std::string>{"begin reflection", "stage reflection"}));
 }
 
 TEST_F(Passes, NeedAndProvideWhatTheSceneAsksFor) {

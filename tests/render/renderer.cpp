@@ -136,21 +136,23 @@ TEST_F(Images, CanBeCancelledInEveryStageAndAskedForAgain) {
     Renderer plain;
     plain.set_scene(SceneDesc(desc_));
     const Film expected = plain.render();
-    for (const std::string stop : {"volumes", "geometry", "splat", "render", "forward scatter"}) {
+    for (const Stage stop :
+         {Stage::volumes, Stage::geometry, Stage::splat, Stage::render, Stage::forward_scatter}) {
         bool asked = false;
         std::atomic<bool> flag = false;
         const StopScope scope(flag);
-        Renderer renderer([&](const std::string& stage, double) {
+        Renderer renderer([&](Stage stage, double) {
             if (asked && stage == stop) flag = true;
         });
         const auto expect_stopped = [&] {
             asked = true;
-            EXPECT_THROW(renderer.render(), Interrupted) << stop;
+            EXPECT_THROW(renderer.render(), Interrupted) << name_of(stop);
             asked = flag = false;
         };
         renderer.set_scene(SceneDesc(desc_));
         expect_stopped();
-        EXPECT_TRUE(std::ranges::equal(renderer.render().values(), expected.values())) << stop;
+        EXPECT_TRUE(std::ranges::equal(renderer.render().values(), expected.values()))
+            << name_of(stop);
         // And a scene that takes over what there was when it was cancelled.
         renderer.set_scene(SceneDesc(desc_));
         expect_stopped();
@@ -161,12 +163,12 @@ TEST_F(Images, CanBeCancelledInEveryStageAndAskedForAgain) {
 TEST_F(Images, TellTheirStagesInOrderFromZeroToOne) {
     desc_.water.forward_scatter = {.K = 1, .G = 0.02, .B = 0.05};
     std::mutex mutex;
-    std::vector<std::string> stages;
+    std::vector<Stage> stages;
     double reached = 0;
-    Renderer renderer([&](const std::string& stage, double fraction) {
+    Renderer renderer([&](Stage stage, double fraction) {
         const std::lock_guard lock(mutex);
         if (stages.empty() || stages.back() != stage) {
-            EXPECT_EQ(fraction, 0) << stage;
+            EXPECT_EQ(fraction, 0) << name_of(stage);
             stages.push_back(stage);
         }
         EXPECT_GE(fraction, 0);
@@ -180,8 +182,8 @@ TEST_F(Images, TellTheirStagesInOrderFromZeroToOne) {
     renderer.render();
     EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-    EXPECT_EQ(stages, (std::vector<std::string>{"volumes", "geometry", "splat", "render",
-                                                "forward scatter"}));
+    EXPECT_EQ(stages, (std::vector{Stage::volumes, Stage::geometry, Stage::splat, Stage::render,
+                                   Stage::forward_scatter}));
     EXPECT_EQ(reached, 1);
 
     desc_.water.forward_scatter = {};
@@ -190,8 +192,8 @@ TEST_F(Images, TellTheirStagesInOrderFromZeroToOne) {
     stages.clear();
     renderer.set_scene(SceneDesc(desc_));
     renderer.render();
-    EXPECT_EQ(std::vector<std::string>(stages.end() - 2, stages.end()),
-              (std::vector<std::string>{"multiple scattering", "render"}));
+    EXPECT_EQ(std::vector(stages.end() - 2, stages.end()),
+              (std::vector{Stage::multiple_scattering, Stage::render}));
     EXPECT_EQ(reached, 1);
     EXPECT_GT(renderer.report().multiple_error, 0);
     EXPECT_FALSE(renderer.report().paths.error);

@@ -43,7 +43,7 @@ class Caches : public testing::Test {
         last_write_time(file, last_write_time(file) + std::chrono::seconds(1));
     }
     AssembledScene assemble() {
-        return assemble_scene(SceneDesc(desc_), cache_, [](const std::string&) {});
+        return assemble_scene(SceneDesc(desc_), cache_, [](Stage) {});
     }
 
     FieldMaker maker_;

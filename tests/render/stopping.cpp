@@ -105,8 +105,7 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
     static std::size_t rays_after_stop(std::size_t until) {
         const SceneDesc desc = scene();
         SceneCache cache;
-        AssembledScene assembled =
-            assemble_scene(SceneDesc(desc), cache, [](const std::string&) {});
+        AssembledScene assembled = assemble_scene(SceneDesc(desc), cache, [](Stage) {});
         const auto surfaces = std::make_shared<StoppingSurfaces>(assembled.surfaces, until);
         assembled.surfaces = surfaces;
         const LayerPlan plan = layer_plan(assembled.image, "default");
@@ -122,7 +121,7 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
             const LightTransport transport = make_light_transport(assembled, light, needs.paths);
             const PixelRenderer pixels =
                 pixel_renderer(assembled, transport, in_scatter_parts(plan));
-            const StageProgressCallback progress = [](const std::string&, double) {};
+            const StageProgressCallback progress = [](Stage, double) {};
             ImageProgress reached;
             Rendering rendering{.desc = desc,
                                 .pixels = pixels,

@@ -45,7 +45,7 @@ class Recorder : public RunClient {
     void warn(std::size_t place, const std::string& line) override {
         warnings.push_back(std::to_string(place) + ": " + line);
     }
-    void tell(const std::string& /*stage*/, double /*fraction*/) override {
+    void tell(Stage /*stage*/, double /*fraction*/) override {
         if (films.size() >= stop_after) stop = true;
     }
 

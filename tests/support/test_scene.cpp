@@ -46,7 +46,7 @@ GeometryDesc plane_at_z(double z) {
 }
 
 TestScene::TestScene(const SceneDesc& desc, const DeepShadowOptions& options)
-    : scene_(assemble_scene(SceneDesc(desc), cache_, [](const std::string& /*stage*/) {})) {
+    : scene_(assemble_scene(SceneDesc(desc), cache_, [](Stage /*stage*/) {})) {
     scene_.slabs = place_slabs(scene_);
     const PassNeeds needs = make_passes(scene_.image).needs(layer_plan(scene_.image, {}));
     if (needs.light) light_ = cache_.light(scene_, options);

@@ -146,9 +146,9 @@ TEST_F(PathFilms, GoOnUntilTheErrorIsSmall) {
     std::vector<PathAccuracy> rounds;
     double last = 0;
     std::mutex mutex;
-    Renderer renderer([&](const std::string& stage, double fraction) {
+    Renderer renderer([&](Stage stage, double fraction) {
         const std::lock_guard lock(mutex);
-        if (stage == "render") last = fraction;
+        if (stage == Stage::render) last = fraction;
         const PathAccuracy& now = renderer.report().paths;
         if (rounds.empty() || rounds.back().samples != now.samples) rounds.push_back(now);
     });
@@ -211,8 +211,8 @@ TEST_F(PathFilms, SayWhatTheyReachedIfTheErrorIsTooSmall) {
 TEST_F(PathFilms, CanBeStopped) {
     std::atomic<bool> stop = false;
     const StopScope scope(stop);
-    Renderer renderer([&](const std::string& stage, double fraction) {
-        if (stage == "render" && fraction > 0) stop = true;
+    Renderer renderer([&](Stage stage, double fraction) {
+        if (stage == Stage::render && fraction > 0) stop = true;
     });
     desc_.render.samples = 4096;
     renderer.set_scene(SceneDesc(desc_));
@@ -222,9 +222,9 @@ TEST_F(PathFilms, CanBeStopped) {
 TEST_F(PathFilms, TellOfTheirProgressEvery64Paths) {
     int reports = 0;
     std::mutex mutex;
-    Renderer renderer([&](const std::string& stage, double) {
+    Renderer renderer([&](Stage stage, double) {
         const std::lock_guard lock(mutex);
-        reports += stage == "render" ? 1 : 0;
+        reports += stage == Stage::render ? 1 : 0;
     });
     desc_.render.samples = 32;
     renderer.set_scene(SceneDesc(desc_));
