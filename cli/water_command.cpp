@@ -22,7 +22,7 @@ namespace uw {
 
 namespace {
 
-constexpr int k_max_listed_bands = 2000;
+constexpr int k_max_wavelengths = 2000;
 
 [[noreturn]] void fail(const std::string& text, std::string_view what) {
     throw UsageError(fmt::format("--bands {}: {}", printable(text), what));
@@ -41,8 +41,8 @@ std::vector<double> wavelengths_of_range(const std::string& text) {
     if (range->last < range->first)
         fail(text, "the last wavelength is less than the first; swap them");
     const double count = range->count();
-    if (count > k_max_bands)
-        fail(text, fmt::format("more than {} wavelengths; give a larger step", k_max_bands));
+    if (count > k_max_wavelengths)
+        fail(text, fmt::format("more than {} wavelengths; give a larger step", k_max_wavelengths));
     std::vector<double> bands;
     bands.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < static_cast<int>(count); ++i) bands.push_back(range->at(i));
@@ -60,8 +60,8 @@ std::vector<double> parse_bands(const std::string& text) {
         check_wavelength(nm, text);
         bands.push_back(nm);
     }
-    if (bands.size() > static_cast<std::size_t>(k_max_bands))
-        fail(text, fmt::format("more than {} wavelengths", k_max_bands));
+    if (bands.size() > static_cast<std::size_t>(k_max_wavelengths))
+        fail(text, fmt::format("more than {} wavelengths", k_max_wavelengths));
     std::vector<double> sorted = bands;
     std::sort(sorted.begin(), sorted.end());
     if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end())
