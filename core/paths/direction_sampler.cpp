@@ -11,18 +11,43 @@ namespace uw {
 
 namespace {
 
-constexpr double k_glossy_share = 0.5;  // of the directions drawn on glossy surfaces
+struct DirectionOptions {
+    /// Candidates of each technique: in the shape of f, and in that of the lamps' light. Without
+    /// lamps, all are of the first.
+    int candidates_per_technique = 3;
+    /// The probability with which a direction on a glossy surface is drawn from its specular lobe.
+    double specular_probability = 0.5;
+    /// No candidate's radiance is expected to be less than this, relative to the candidates' mean:
+    /// what shines there after all would be too bright.
+    double min_relative_radiance = 0.3;
+    /// How far a path begins above the surface that it leaves, relative to the coordinates and to
+    /// its last segment: above the rounding of single precision, in which surfaces are found.
+    double offset = 4e-7;
+    /// The golden ratio less one, whose multiples are spread evenly over the unit interval.
+    double golden = 0.6180339887498949;
+};
+constexpr DirectionOptions k_direction;
 
 Vector3 cosine_direction(const Vector3& normal, double u, double azimuth) {
     return direction_around(normal, std::sqrt(u) / (1 + std::sqrt(1 - u)), azimuth);
+}
+
+Point3 above(const SurfaceHit& hit) {
+    const double scale = std::max({std::abs(hit.position.x), std::abs(hit.position.y),
+                                   std::abs(hit.position.z), hit.distance});
+    return hit.position + (k_direction.offset * scale) * hit.geometric_normal;
+}
+
+double wrapped(double x) {
+    return x - std::floor(x);
 }
 
 }  // namespace
 
 std::optional<Vector3> sample_phase_function(const ScatteringTables& tables,
                                              const WaterPoint& point, const Vector3& direction,
-                                             PathRandom& random, std::span<double> throughput) {
-    thread_local std::vector<double> cumulative;
+                                             PathRandom& random, std::span<double> throughput,
+                                             std::vector<double>& cumulative) {
     double u = random.next();
     const double v = random.next(), azimuth = random.next();
     double total = 0;
@@ -41,69 +66,96 @@ std::optional<Vector3> sample_phase_function(const ScatteringTables& tables,
     return direction_around(direction, phase.invert(v * phase.mass()), azimuth);
 }
 
-void DirectionSampler::scatter(const GuidingTables& tables, const Point3& x,
-                               const Vector3& direction, const WaterPoint& point,
-                               const Spectrum& throughput) {
-    tables_ = &tables;
-    x_ = x;
-    incoming_ = direction;
-    point_ = &point;
-    segment_ = nullptr;
-    phase_cumulative_.clear();
+DirectionSampler::DirectionSampler(const GuidingTables& tables, const Point3& x,
+                                   const Vector3& incoming, const WaterPoint& point,
+                                   const Spectrum& throughput, const GuidingDistribution& guides,
+                                   Scratch& scratch)
+    : tables_(&tables),
+      guides_(&guides),
+      scratch_(&scratch),
+      x_(x),
+      origin_(x),
+      incoming_(incoming),
+      scattering_(point.scattering),
+      throughput_(throughput) {
+    scratch_->phase_cumulative.clear();
     double total = 0;
-    for (const Spectrum& b : point.scattering) {
+    for (const Spectrum& b : scattering_) {
         for (std::size_t band = 0; band < tables_->optics.bands(); ++band)
             total += throughput[band] * b[band];
-        phase_cumulative_.push_back(total);
+        scratch_->phase_cumulative.push_back(total);
     }
-    find_guides(throughput);
+    accumulate_guides();
 }
 
-void DirectionSampler::reflect(const GuidingTables& tables, const WaterSegment& segment,
-                               const Spectrum& throughput) {
-    tables_ = &tables;
-    x_ = segment.hit.position;
-    incoming_ = segment.ray.direction;
-    point_ = nullptr;
-    segment_ = &segment;
-    sample_.emplace(SurfaceSample{segment.ray, segment.hit, 0, 0});
-    reflection_.emplace(*tables_->optics.scene().surfaces, *sample_,
+DirectionSampler::DirectionSampler(const GuidingTables& tables, const Ray& ray,
+                                   const SurfaceHit& hit, const Spectrum& throughput,
+                                   const GuidingDistribution& guides, Scratch& scratch)
+    : tables_(&tables),
+      guides_(&guides),
+      scratch_(&scratch),
+      x_(hit.position),
+      origin_(above(hit)),
+      incoming_(ray.direction),
+      throughput_(throughput) {
+    scratch_->surface = {ray, hit, 0, 0};
+    reflection_.emplace(*tables_->optics.scene().surfaces, scratch_->surface,
                         static_cast<int>(tables_->optics.bands()));
-    find_guides(throughput);
+    accumulate_guides();
 }
 
-void DirectionSampler::find_guides(const Spectrum& throughput) {
-    throughput_ = throughput;
-    guides_.find(*tables_, x_, throughput);
-    guide_cumulative_.clear();
+void DirectionSampler::accumulate_guides() {
+    scratch_->guide_cumulative.clear();
     double total = 0;
-    for (const GuidingDistribution::Guide& guide : guides_.all()) {
+    for (const GuidingDistribution::Guide& guide : guides_->all()) {
         total += guide.irradiance;
-        guide_cumulative_.push_back(total);
+        scratch_->guide_cumulative.push_back(total);
     }
 }
 
-// Resampled importance sampling (Talbot et al. 2005): stratified, as many of each kind, weighted
-// against each other by the balance heuristic.
-double DirectionSampler::sample_candidates(PathRandom& random, const ExpectedRadiance& expected,
-                                           std::vector<DirectionCandidate>& candidates) const {
-    constexpr int k_of_each = 3;
-    constexpr double k_golden = 0.6180339887498949;  // spreads azimuths evenly
-    constexpr double k_min_light = 0.3;              // relative to the candidates' mean
+std::optional<DirectionSample> DirectionSampler::sample(PathRandom& random,
+                                                        const ExpectedRadiance& expected) const {
+    const double sum = sample_candidates(random, expected), u = random.next();
+    if (!(sum > 0)) return std::nullopt;
+    std::span<const Scratch::Candidate> candidates = scratch_->candidates;
+    double target = u * sum;
+    while (candidates.size() > 1 && target >= candidates.front().weight()) {
+        target -= candidates.front().weight();
+        candidates = candidates.subspan(1);
+    }
+    const Scratch::Candidate& chosen = candidates.front();
+    DirectionSample sample{.direction = chosen.direction,
+                           .weight = {},
+                           .radiance = chosen.radiance,
+                           .of_particles = chosen.of_particles};
+    eval(chosen.direction, sample.weight);
+    const double factor = sum / (chosen.response * chosen.radiance);
+    for (double& value : sample.weight.first(tables_->optics.bands())) value *= factor;
+    return sample;
+}
+
+// Returns the sum of the candidates' weights. They are stratified.
+double DirectionSampler::sample_candidates(PathRandom& random,
+                                           const ExpectedRadiance& expected) const {
+    std::vector<Scratch::Candidate>& candidates = scratch_->candidates;
     candidates.clear();
-    const double u_lobe = random.next(), a_lobe = random.next();
-    const double u_own = random.next(), v_own = random.next();
-    if (point_ && (phase_cumulative_.empty() || !(phase_cumulative_.back() > 0))) return 0;
-    const auto wrapped = [](double x) { return x - std::floor(x); };
-    const std::span<const GuidingDistribution::Guide> guides = guides_.all();
-    const int of_lobes = guides.empty() ? 0 : k_of_each, of_own = 2 * k_of_each - of_lobes;
+    const double u_guide = random.next(), azimuth_guide = random.next();
+    const double u_local = random.next(), v_local = random.next();
+    const bool scatters = !reflection_;
+    if (scatters &&
+        (scratch_->phase_cumulative.empty() || !(scratch_->phase_cumulative.back() > 0)))
+        return 0;
+    const std::span<const GuidingDistribution::Guide> guides = guides_->all();
+    const int of_guides = guides.empty() ? 0 : k_direction.candidates_per_technique;
+    const int of_local = 2 * k_direction.candidates_per_technique - of_guides;
     const LampRadianceTable& field = tables_->scattering.field();
-    double sum = 0, responding = 0;
-    for (int k = 0; k < of_lobes + of_own; ++k) {
-        DirectionCandidate candidate;
-        if (k < of_lobes) {
-            double u = (k + u_lobe) / of_lobes;
-            const GuidingDistribution::Guide& guide = guides[choose(guide_cumulative_, u).index];
+    double sum = 0, sum_of_responses = 0;
+    for (int k = 0; k < of_guides + of_local; ++k) {
+        Scratch::Candidate candidate;
+        if (k < of_guides) {
+            double u = (k + u_guide) / of_guides;
+            const GuidingDistribution::Guide& guide =
+                guides[choose(scratch_->guide_cumulative, u).index];
             const HalfTangentDensity* lobe = &field.lobe(guide.place);
             if (guide.scattered_once > 0) {
                 u *= 2;
@@ -113,60 +165,62 @@ double DirectionSampler::sample_candidates(PathRandom& random, const ExpectedRad
                 }
             }
             candidate.direction = direction_around(guide.direction, lobe->invert(u * lobe->mass()),
-                                                   wrapped(a_lobe + k * k_golden));
+                                                   wrapped(azimuth_guide + k * k_direction.golden));
         } else {
-            const int i = k - of_lobes;
+            const int i = k - of_guides;
             candidate.direction =
-                sample_local(wrapped(u_own + i * k_golden), (i + v_own) / of_own,
-                             wrapped(u_own + a_lobe + i * k_golden * k_golden + 0.5));
+                sample_local(wrapped(u_local + i * k_direction.golden), (i + v_local) / of_local,
+                             wrapped(u_local + azimuth_guide +
+                                     i * k_direction.golden * k_direction.golden + 0.5));
         }
         const Vector3& direction = candidate.direction;
-        if (segment_ && glm::dot(segment_->hit.geometric_normal, direction) <= 0) continue;
-        candidate.density =
-            of_own * local_pdf(direction) + (of_lobes > 0 ? of_lobes * guide_pdf(direction) : 0);
-        candidate.response = target_density(direction);
+        if (!scatters && glm::dot(scratch_->surface.hit.geometric_normal, direction) <= 0) continue;
+        candidate.density = of_local * local_pdf(direction) +
+                            (of_guides > 0 ? of_guides * guide_pdf(direction) : 0);
+        candidate.response = response(direction);
         candidate.of_particles = tables_->particles.along({x_, direction}, k_far);
-        candidate.light = guides_.radiance(direction) + candidate.of_particles + expected.ambient;
+        candidate.radiance =
+            guides_->radiance(direction) + candidate.of_particles + expected.ambient;
         if (expected.of_surface > 0 && glm::dot(expected.normal, direction) < 0)
-            candidate.light += expected.of_surface;
+            candidate.radiance += expected.of_surface;
         if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;
         sum += candidate.weight();
-        responding += candidate.response / candidate.density;
+        sum_of_responses += candidate.response / candidate.density;
         candidates.push_back(candidate);
     }
     if (candidates.empty()) return 0;
-    // None is guessed far darker than the mean: what shines there after all would be too bright.
-    const double least = k_min_light * sum / responding;
+    const double min_radiance = k_direction.min_relative_radiance * sum / sum_of_responses;
     sum = 0;
-    for (DirectionCandidate& candidate : candidates) {
-        candidate.light = std::max(candidate.light, least);
+    for (Scratch::Candidate& candidate : candidates) {
+        candidate.radiance = std::max(candidate.radiance, min_radiance);
         sum += candidate.weight();
     }
     return sum;
 }
 
-// The density of the lobes that candidates are drawn from [1/sr]: a sun has two, of which one is
-// its light that is scattered once.
+// The density of the guides' lobes [1/sr]: a sun has two, of which one is for its light that is
+// scattered once.
 double DirectionSampler::guide_pdf(const Vector3& direction) const {
+    const std::span<const double> cumulative = scratch_->guide_cumulative;
     const LampRadianceTable& field = tables_->scattering.field();
     double sum = 0, before = 0;
-    for (std::size_t j = 0; j < guide_cumulative_.size(); ++j) {
-        const GuidingDistribution::Guide& guide = guides_.all()[j];
+    for (std::size_t j = 0; j < cumulative.size(); ++j) {
+        const GuidingDistribution::Guide& guide = guides_->all()[j];
         const HalfTangentDensity& lobe = field.lobe(guide.place);
         const double h = half_tangent_between(guide.direction, direction);
         double density = lobe.density(h) / lobe.mass();
         if (guide.scattered_once > 0)
             density = 0.5 * (density + field.phase().density(h) / field.phase().mass());
-        sum += (guide_cumulative_[j] - before) * density * per_solid_angle(h);
-        before = guide_cumulative_[j];
+        sum += (cumulative[j] - before) * density * per_solid_angle(h);
+        before = cumulative[j];
     }
     return sum / before;
 }
 
-// `respond`, summed over the bands with the throughput; of a scattering, by what directions are
+// f, summed over the bands with the throughput; for a scattering, by the tables that directions are
 // drawn from.
-double DirectionSampler::target_density(const Vector3& direction) const {
-    if (point_) return phase_cumulative_.back() * local_pdf(direction);
+double DirectionSampler::response(const Vector3& direction) const {
+    if (!reflection_) return scratch_->phase_cumulative.back() * local_pdf(direction);
     Spectrum values;
     eval(direction, values);
     double sum = 0;
@@ -174,53 +228,56 @@ double DirectionSampler::target_density(const Vector3& direction) const {
     return sum;
 }
 
-// In proportion to the phase function or BRDF.
+// A direction in proportion to f, or nearly so.
 Vector3 DirectionSampler::sample_local(double u, double v, double azimuth) const {
-    if (point_) {
+    if (!reflection_) {
         const HalfTangentDensity& phase =
-            tables_->scattering.directions[choose(phase_cumulative_, u).index];
+            tables_->scattering.directions[choose(scratch_->phase_cumulative, u).index];
         return direction_around(incoming_, phase.invert(v * phase.mass()), azimuth);
     }
-    const Vector3& normal = segment_->hit.normal;
-    if (!reflection_->is_glossy() || u >= k_glossy_share)
+    const Vector3& normal = scratch_->surface.hit.normal;
+    if (!reflection_->is_glossy() || u >= k_direction.specular_probability)
         return cosine_direction(normal, v, azimuth);
     const double h = sample_half_vector(v, reflection_->roughness());
     const Vector3 half = direction_around(normal, h, azimuth);
     return glm::normalize(incoming_ - 2 * glm::dot(incoming_, half) * half);
 }
 
+// The density of sample_local [1/sr].
 double DirectionSampler::local_pdf(const Vector3& direction) const {
-    if (point_) {
+    if (!reflection_) {
+        const std::span<const double> cumulative = scratch_->phase_cumulative;
         const double h = half_tangent_between(incoming_, direction);
         double sum = 0, before = 0;
-        for (std::size_t m = 0; m < phase_cumulative_.size(); ++m) {
+        for (std::size_t m = 0; m < cumulative.size(); ++m) {
             const HalfTangentDensity& phase = tables_->scattering.directions[m];
-            sum += (phase_cumulative_[m] - before) / phase.mass() * phase.density(h);
-            before = phase_cumulative_[m];
+            sum += (cumulative[m] - before) / phase.mass() * phase.density(h);
+            before = cumulative[m];
         }
         return before > 0 ? sum / before * per_solid_angle(h) : 0.0;
     }
-    const Vector3& normal = segment_->hit.normal;
+    const Vector3& normal = scratch_->surface.hit.normal;
     const double cosine = std::max(0.0, glm::dot(normal, direction)) * std::numbers::inv_pi;
     if (!reflection_->is_glossy()) return cosine;
-    return (1 - k_glossy_share) * cosine +
-           k_glossy_share *
+    return (1 - k_direction.specular_probability) * cosine +
+           k_direction.specular_probability *
                half_vector_density(normal, -incoming_, direction, reflection_->roughness());
 }
 
+// f by band [1/m/sr, 1/sr].
 void DirectionSampler::eval(const Vector3& direction, Spectrum& values) const {
     const std::size_t bands = tables_->optics.bands();
-    if (point_) {
-        thread_local std::vector<double> p;
+    if (!reflection_) {
+        std::vector<double>& p = scratch_->phase;
         p.resize(tables_->scattering.phase_count());
         tables_->scattering.phase(half_tangent_between(incoming_, direction), p);
         for (std::size_t b = 0; b < bands; ++b) {
             values[b] = 0;
-            for (std::size_t m = 0; m < p.size(); ++m) values[b] += point_->scattering[m][b] * p[m];
+            for (std::size_t m = 0; m < p.size(); ++m) values[b] += scattering_[m][b] * p[m];
         }
         return;
     }
-    const double cosine = std::max(0.0, glm::dot(segment_->hit.normal, direction));
+    const double cosine = std::max(0.0, glm::dot(scratch_->surface.hit.normal, direction));
     reflection_->brdf_towards(direction, values);
     for (double& value : values.first(bands)) value *= cosine;
 }

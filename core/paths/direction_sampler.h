@@ -12,16 +12,6 @@
 
 namespace uw {
 
-/// One of several directions that are drawn at a sampler, of which a path takes one.
-struct DirectionCandidate {
-    Vector3 direction{0, 0, 1};
-    double light = 0;  // guessed to arrive from there, mean over the bands with the throughput
-    double of_particles = 0;  // MediumRadianceCache's part of it
-    double response = 0;      // the sampler to it, roughly, summed over the bands
-    double density = 0;       // with which any of the candidates is drawn there, times their number
-    double weight() const { return response * light / density; }
-};
-
 /// Light that paths may meet beside that of the lamps: from everywhere, and that of a surface which
 /// lies across `normal`, as it arrives [W m^-2 sr^-1].
 struct ExpectedRadiance {
@@ -29,56 +19,88 @@ struct ExpectedRadiance {
     Vector3 normal{0, 0, 1};
 };
 
-/// The direction in which a path goes on that is scattered by the phase functions alone, where it
-/// travels along `direction`. Multiplies `throughput`, by band, by the scattering coefficients over
-/// the probability of what was drawn. Uses three random numbers; empty if nothing scatters.
-std::optional<Vector3> sample_phase_function(const ScatteringTables& tables,
-                                             const WaterPoint& point, const Vector3& direction,
-                                             PathRandom& random, std::span<double> throughput);
+/// The direction in which a path goes on from a vertex.
+struct DirectionSample {
+    Vector3 direction{0, 0, 1};
+    Spectrum weight;  // f over the probability density, by which the throughput is to be multiplied
+    double radiance = 0;      // expected from there, mean over the bands with the throughput
+    double of_particles = 0;  // MediumRadianceCache's part of it
+};
 
-/// Where a path from the camera turns: scattered by the water or reflected by a surface. It draws a
-/// few candidates of the direction in which the path goes on, of two kinds: in proportion to its
-/// own phase function or BRDF, and in the shape of the light around the lamps, as
-/// GuidingDistribution know it. Radiance grows as 1/psi towards a lamp: without the second kind the
-/// variance would be infinite. Reused storage.
+/// Samples the direction in which a path from the camera goes on from a vertex, where the water
+/// scatters it or a surface reflects it, by resampled importance sampling (Talbot, Cline and
+/// Egbert 2005). Of N candidates w_i with the density p, one is taken in proportion to
+/// p^(w_i) / p(w_i), and the integral of f(w) L(w) is estimated by
+///
+///     f(w) L(w) / p^(w)  *  (1/N) sum_i p^(w_i) / p(w_i).
+///
+/// f is the sum over m of b_m p_m for a scattering, BRDF times cosine for a reflection. The target
+/// p^ is f, summed over the bands with the throughput, times the radiance that is expected from the
+/// direction. Half of the candidates are drawn in proportion to f and half in the shape of the
+/// light around the lamps (GuidingDistribution); p is the mean of both densities, which is the
+/// balance heuristic (Veach 1997). Radiance grows as 1/psi towards a lamp, and without the second
+/// kind of candidates the variance would be infinite.
 class DirectionSampler {
   public:
-    /// The path travels along `direction` and is scattered at `x`; `point` has the scattering
-    /// coefficients there and must stay valid. `throughput` weighs the bands.
-    void scatter(const GuidingTables& tables, const Point3& x, const Vector3& direction,
-                 const WaterPoint& point, const Spectrum& throughput);
-    /// The path of `segment`, which must stay valid, is reflected by the surface at its end.
-    void reflect(const GuidingTables& tables, const WaterSegment& segment,
-                 const Spectrum& throughput);
+    /// Memory that is kept so that paths do not allocate; no two samplers use it at a time.
+    struct Scratch {
+        struct Candidate {
+            Vector3 direction{0, 0, 1};
+            double radiance = 0, of_particles = 0;  // as in DirectionSample
+            double response = 0;                    // f, summed over the bands with the throughput
+            double density = 0;                     // N p
+            double weight() const { return response * radiance / density; }
+        };
 
-    /// Draws candidates, of which `expected` is known beside the lamps. Their weights, in
-    /// proportion to which one of them is to be chosen, sum to the number that is returned. Uses
-    /// four random numbers.
-    double sample_candidates(PathRandom& random, const ExpectedRadiance& expected,
-                             std::vector<DirectionCandidate>& candidates) const;
-    const GuidingDistribution& guides() const { return guides_; }
+        SurfaceSample surface;
+        std::vector<double> phase_cumulative, guide_cumulative, phase;
+        std::vector<Candidate> candidates;
+    };
 
-    /// sum_m b_m p_m, or BRDF times cosine, towards `direction` [1/m/sr, 1/sr].
-    void eval(const Vector3& direction, Spectrum& values) const;
+    /// The path that travels along `incoming` is scattered at `x`, where `point` has the scattering
+    /// coefficients. `guides` are those at `x`, for the path's `throughput`. All that is referred
+    /// to must stay as it is while the sampler is in use.
+    DirectionSampler(const GuidingTables& tables, const Point3& x, const Vector3& incoming,
+                     const WaterPoint& point, const Spectrum& throughput,
+                     const GuidingDistribution& guides, Scratch& scratch);
+    /// The path along `ray` is reflected at `hit`.
+    DirectionSampler(const GuidingTables& tables, const Ray& ray, const SurfaceHit& hit,
+                     const Spectrum& throughput, const GuidingDistribution& guides,
+                     Scratch& scratch);
+
+    /// Where the path goes on: at the scattering, or a little above the surface.
+    const Point3& origin() const { return origin_; }
+    /// Samples a direction, where `expected` is known beside the light of the lamps. Uses five
+    /// random numbers; empty where nothing responds.
+    std::optional<DirectionSample> sample(PathRandom& random,
+                                          const ExpectedRadiance& expected) const;
 
   private:
-    void find_guides(const Spectrum& throughput);
+    void accumulate_guides();
+    double sample_candidates(PathRandom& random, const ExpectedRadiance& expected) const;
+    void eval(const Vector3& direction, Spectrum& values) const;
     Vector3 sample_local(double u, double v, double azimuth) const;
     double local_pdf(const Vector3& direction) const;
     double guide_pdf(const Vector3& direction) const;
-    double target_density(const Vector3& direction) const;
+    double response(const Vector3& direction) const;
 
-    const GuidingTables* tables_ = nullptr;
-    Point3 x_;
-    Vector3 incoming_{0, 0, 1};              // of the path, away from the camera
-    const WaterPoint* point_ = nullptr;      // of a scattering
-    const WaterSegment* segment_ = nullptr;  // of a reflection
-    std::optional<SurfaceSample> sample_;
-    std::optional<SurfaceReflection> reflection_;
-    std::vector<double> phase_cumulative_;
-    GuidingDistribution guides_;
-    std::vector<double> guide_cumulative_;
+    const GuidingTables* tables_;
+    const GuidingDistribution* guides_;
+    Scratch* scratch_;
+    Point3 x_, origin_;
+    Vector3 incoming_;
+    std::span<const Spectrum> scattering_;         // b_m, of a scattering
+    std::optional<SurfaceReflection> reflection_;  // of a reflection, by scratch_->surface
     Spectrum throughput_;
 };
+
+/// Samples the direction in which a path goes on that is scattered by the phase functions alone,
+/// where it travels along `direction`. Multiplies `throughput`, by band, by sum_m b_m p_m over the
+/// probability density of what was drawn. Uses three random numbers, and `cumulative` as scratch;
+/// empty if nothing scatters.
+std::optional<Vector3> sample_phase_function(const ScatteringTables& tables,
+                                             const WaterPoint& point, const Vector3& direction,
+                                             PathRandom& random, std::span<double> throughput,
+                                             std::vector<double>& cumulative);
 
 }  // namespace uw

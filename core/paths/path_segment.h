@@ -32,7 +32,7 @@ inline constexpr std::size_t k_no_lamp = std::numeric_limits<std::size_t>::max()
 
 /// In place of an emitter's: the light is not that of a lamp, or of one that is seen itself.
 inline constexpr std::size_t k_no_emitter = std::numeric_limits<std::size_t>::max();
-/// In place of the number of a turn: there is none before, or nobody keeps them.
+/// In place of the number of a vertex: there is none before, or nobody keeps them.
 inline constexpr int k_no_vertex = -1;
 
 /// Where a light path begins or changes its direction, seen from the camera.
@@ -54,7 +54,7 @@ struct PathContribution {
     /// Estimate of the radiance, one value per band of the scene [W m^-2 sr^-1].
     std::span<const double> radiance;
 
-    // Its way, for those who were told of its turns (ContributionSink::turn):
+    // Its path, for those who were told of its vertices (ContributionSink::add_vertex):
     int vertex = k_no_vertex;            // the last before `place`
     Point3 place{};                      // of its last event: scattered, reflected or emitted
     const SurfaceHit* hit = nullptr;     // there; null in the water
@@ -64,32 +64,45 @@ struct PathContribution {
     std::span<const double> columns{}, concentration{};
 };
 
-/// Receives the terms of a path one by one. Their sum is an unbiased estimate.
+/// Receives the contributions of paths one by one. Their sum is an unbiased estimate.
 class ContributionSink {
   public:
     virtual ~ContributionSink() = default;
-    virtual void add(const PathContribution& term) = 0;
-    /// Is told of each turn of a path, after the one with the number `before` and before the sink
-    /// that come by way of it. Returns its number. Most need not know.
+    virtual void add(const PathContribution& contribution) = 0;
+    /// Is told of each vertex of a path, after the one with the number `before` and ahead of the
+    /// contributions that come by way of it. Returns its number. Most sinks need not know.
     virtual int add_vertex(int /*before*/, const PathVertex& /*vertex*/) { return k_no_vertex; }
 };
 
-/// What a path from the camera has done up to its current segment.
+/// What the paths of one pixel may bring: rough means over the bands [W m^-2 sr^-1], to which the
+/// splitting factor of a path relates what the path itself is expected to bring.
+struct ExpectedLight {
+    double pixel = 0;       // the pixel's radiance, without single scattering
+    double ambient = 0;     // what a path may meet anywhere
+    double of_surface = 0;  // the part of `pixel` that comes straight from the surface
+    bool is_known = true;   // false: they stand for nothing but each other
+};
+
+/// All of a path from the camera that its next step depends on, beside the water ahead of it
+/// (PathSegment): each step makes a new one of the last.
 struct PathState {
-    Spectrum throughput;  // radiance at the camera per radiance that arrives along the segment
+    Ray ray;                 // of the path's current segment, away from the camera
+    Spectrum throughput;     // radiance at the camera per radiance that arrives along the segment
+    ExpectedLight expected;  // of the pixel, with what the path has found on its way
     int scatterings = 0, reflections = 0;
-    bool from_water = false;   // where it first turned, seen from the camera
-    double distance = 0;       // and how far along the camera ray [m]
-    double splitting = 1;      // into how many it has split
-    int vertex = k_no_vertex;  // the last
-    /// The surface that it was reflected by last, and what that reflects, roughly.
+    bool from_water = false;      // its first vertex, seen from the camera, is a scattering
+    bool stays_in_water = false;  // surfaces end it, and it leaves out what they emit and reflect
+    double distance = 0;          // of the first vertex, along the camera ray [m]
+    double splitting = 1;         // the product of its splitting factors
+    int vertex = k_no_vertex;     // the last
+    /// The surface by which it was reflected last.
     struct LeftSurface {
         Point3 position;
         Vector3 normal{0, 0, 1};
-        double radiance = 0;  // mean over the bands [W m^-2 sr^-1]
+        double radiance = 0;  // that it is expected to reflect, mean over the bands
     } left;
 
-    /// A term of light that arrives along the segment.
+    /// A contribution of light that arrives along the segment.
     PathContribution contribution(std::size_t lamp, std::span<const double> radiance) const {
         return {.lamp = lamp,
                 .scatterings = scatterings,
@@ -184,13 +197,8 @@ struct CameraSegment {
     /// Where the paths' first scattering lies: running sums of weights of the intervals between
     /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
     std::vector<double> distances, cumulative;
-    /// Rough means over the bands, which guide the paths.
-    struct Expected {
-        double pixel = 0;       // the ray's radiance, without single scattering
-        double ambient = 0;     // what a path may meet anywhere
-        double of_surface = 0;  // the part of `pixel` that comes straight from the surface
-        bool is_known = true;   // false: they stand for nothing but each other
-    } expected;
+    using Expected = ExpectedLight;
+    ExpectedLight expected;
     /// The mean numbers of paths of each kind that are traced in place of one: fewer where they
     /// bring less of the ray's light than others.
     PathCounts paths;

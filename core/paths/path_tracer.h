@@ -13,11 +13,21 @@
 namespace uw {
 
 class IrradianceCache;
+struct LampPassage;
 struct LampView;
 struct PathTables;
 struct ScatteringTables;
 
-/// Unbiased estimates of all light by random paths from the camera (docs/multiple.md). Thread safe.
+/// Estimates all light by random paths from the camera, without bias (docs/multiple.md): the
+/// radiance of a camera ray is
+///
+///     L = int from 0 to D of e^(-tau(s)) sum_m b_m int p_m(w) L(s, w) dw ds
+///         + e^(-tau(D)) int f(w) L(D, w) cos dw + what the surface at D emits.
+///
+/// L(s, w) is the light that arrives from the direction w, and `begin` prepares a density over s.
+/// trace_single estimates what has a single event, trace_water and trace_lit_surfaces the rest of
+/// the first integral, by whether there is a surface on the way, and trace_surface that of the
+/// second one. How a path goes on from its first vertex is PathWalk's. Thread safe.
 class PathTracer {
   public:
     /// `deep_shadows`: where paths take optical depths between lamps and points from, one per
@@ -71,20 +81,26 @@ class PathTracer {
     /// water in front of it.
     void trace_mirrored(const SurfaceSample& sample, PathRandom& random,
                         ContributionSink& sink) const;
-    /// Whether a term of trace_surface is one of trace_mirrored.
+    /// Whether a contribution of trace_surface is one of trace_mirrored.
     static bool is_mirrored(const PathContribution& contribution) {
         return contribution.scatterings + contribution.reflections ==
                (contribution.lamp == k_no_lamp ? 1 : 2);
     }
 
   private:
+    struct Scratch;
+
+    static Scratch& scratch_of_thread();
     const PathTables& choose_tables(PathRandom& random) const;
     double trace_water_path(const CameraSegment& segment, PathRandom& random,
                             ContributionSink& sink) const;
-    void place_intervals(CameraSegment& segment) const;
-    double estimate_surface_light(const CameraSegment& segment,
-                                  std::span<const double> surface_light, Spectrum& light) const;
-    void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
+    double trace_lit_surface_path(const CameraSegment& segment, const IrradianceCache* indirect,
+                                  PathRandom& random, ContributionSink& sink) const;
+    void place_intervals(std::span<const LampPassage> passages, CameraSegment& segment) const;
+    double expect_surface(const CameraSegment& segment, std::span<const double> surface_light,
+                          Spectrum& radiance) const;
+    void weigh_intervals(std::span<const double> surface_light, Scratch& scratch,
+                         CameraSegment& segment) const;
 
     std::shared_ptr<const ScatteringTables> scattering_;
     std::vector<LampView> views_;

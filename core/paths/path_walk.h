@@ -14,119 +14,135 @@ namespace uw {
 
 class IrradianceCache;
 
-/// The share of the ambient light that a path is expected to find beyond what is known of it.
+/// The fraction of the ambient light that a path is expected to find beyond what is known of it.
 inline constexpr double k_ambient_beyond = 0.02;
 
-/// One path, from its first sampler to its end.
-class PathWalk {
-  public:
-    PathWalk(const PathTables& tables, const CameraSegment::Expected& expected, PathRandom& random,
-             ContributionSink& sink)
-        : tables_(tables), expected_(expected), random_(random), sink_(sink) {}
-
-    PathState& state() { return state_; }
-    /// What it has taken: vertices at which a direction was chosen by all that is known, and a
-    /// small part of each other.
-    double work() const { return work_; }
-    /// Ends the path at surfaces and leaves out what they emit and reflect.
-    void stay_in_water() { stays_in_water_ = true; }
-
-    /// Begins with a scattering at `point` of `segment`, or with a reflection at its end.
-    void from_water(const WaterSegment& segment, const WaterPoint& point);
-    void from_surface(const WaterSegment& segment);
-    /// Begins with reflections at its end, as many as their light is worth relative to the pixel's.
-    void split_at_surface(const WaterSegment& segment);
-    /// What the surface at the end of `segment` reflects of light that was scattered or reflected
-    /// once before, and no more.
-    void mirror(const WaterSegment& segment);
-    /// Is scattered on `segment`, and on by the phase function alone until it meets a surface,
-    /// which is the end of this; null if it meets none.
-    const WaterSegment* wander(const WaterSegment& segment);
-    /// The light of the surface at which it has ended: by looking up what is not direct, or by
-    /// going on from there.
-    void trace_lit_surface(const IrradianceCache& indirect);
-    void trace_lit_surface();
-
-  private:
-    struct Workspace;
-
-    static Workspace& workspace_of_thread();
-
-    // Tells of a turn, which is the path's last from now on.
-    void add_vertex(PathVertex::Kind kind, const Point3& position, const SurfaceHit* hit = nullptr);
-    // Gathers the light that arrives at the workspace's sampler from a direction that it draws,
-    // along which the path may go on; false if it ends there, as it does anyhow if this `is_last`.
-    bool leave(const Point3& origin, bool is_last = false);
-    ExpectedRadiance expected_from(const Point3& x) const;
-    double splitting_factor(const DirectionCandidate& chosen) const;
-    // Whether the segment ends at the water's surface, which reflects the path along
-    // mirrored_ray() with this reflectance.
-    bool meets_water_surface() const;
-    Ray mirrored_ray() const;
-    double reflectance_of_water_surface() const;
-    double radiance_in_mirror(const Spectrum& throughput);
-    // Moves on to the segment that begins there, and gathers its light. The throughput is that at
-    // the surface, after reflection.
-    void follow_mirrored();
-    void estimate_next_event();
-    void find_surface_ahead();
-    void find_emission(const Spectrum& throughput);
-    double arriving(double radiance) const;
-    void estimate_surface_light();
-    void trace(const Ray& ray);
-    void find_transmittance();  // of the segment
-    void follow(bool goes_on);
-    // Moves to the next sampler and on from there; false if the path ends.
-    bool advance();
-    double draw_places(const Spectrum& to_end);
-    // The distance of the next scattering on the segment, by w.shares of what the bands lose on the
-    // way to its end; its length if there is none.
-    double draw_distance(double u) const;
-    // Moves there; the shares are relative to all that may happen on the segment. False if the
-    // water does nothing there.
-    bool go_to(double distance);
-    // Whether there is a surface before; if so, it ends the segment.
-    bool meets_surface_before(double distance);
-
-    const PathTables& tables_;
-    CameraSegment::Expected expected_;
-    PathRandom& random_;
-    ContributionSink& sink_;
-    PathState state_;
-    double work_ = 0;
-    bool stays_in_water_ = false;
+/// The water ahead of a path: from its last vertex to the first surface in its direction.
+struct PathSegment {
+    WaterSegment water;
+    Spectrum transmittance;      // of all of it; 0 without a surface at its end
+    GuidingDistribution guides;  // the light of the lamps around its beginning
+    /// What the surface at its end is expected to reflect, mean over the bands, and what that
+    /// contributes to the pixel, summed over the bands.
+    double surface_radiance = 0, surface_contribution = 0;
 };
 
-/// Per thread: paths do not allocate.
-struct PathWalk::Workspace {
-    /// A branch of a path that has yet to be followed.
-    struct Pending {
-        PathState state;
-        Ray ray;
-    };
+/// Memory that is kept so that paths do not allocate. Each path writes whatever it reads; no two
+/// paths use it at a time.
+struct PathScratch {
     /// Where a path may be scattered next on its segment.
-    struct Place {
+    struct Collision {
         double distance = 0;
-        double light = 0;  // guessed to be scattered along the path there, per unit of throughput
-        double scatters = 0;  // b, summed over the bands with the throughput up to there [1/m]
-        double density = 0;   // with which any of the places is drawn there, times their number
-        double weight() const { return scatters * light / density; }
+        double radiance = 0;    // expected to be scattered along the path there
+        double scattering = 0;  // b, summed over the bands with the throughput up to there [1/m]
+        double density = 0;     // of the candidates there, times their number [1/m]
+        double weight() const { return scattering * radiance / density; }
     };
 
-    WaterSegment segment, first_segment;
+    PathSegment segment;
     WaterPoint point;
-    Spectrum transmittance;
-    std::vector<double> c, shares, cumulative;
-    DirectionSampler sampler;
-    std::vector<double> indirect;  // by lamp and band
-    std::vector<Pending> pending;
-    std::vector<DirectionCandidate> candidates;
-    std::vector<Place> places;
-    const GuidingDistribution* guides = nullptr;  // at the beginning of the segment
-    GuidingDistribution guides_of_pending, guides_of_mirrored, guides_at_water_surface;
-    // What the surface at its end reflects, roughly, and what of that arrives at the camera, summed
-    // over the bands.
-    double surface_radiance = 0, surface_ahead = 0;
+    DirectionSampler::Scratch directions;
+    std::vector<Collision> collisions;
+    std::vector<PathState> branches;  // that have yet to be followed
+    GuidingDistribution guides_in_mirror;
+    std::vector<double> cumulative, indirect;
+};
+
+/// Traces a light path from its first vertex, and all branches into which it splits. With the
+/// throughput T_k of its segment k, the path estimates the pixel's radiance by
+///
+///     sum over k of T_k N_k,    T_(k+1) = T_k / q_k * e^(-tau(s)) / p(s) * f(w) / p(w).
+///
+/// N_k is the light of lamps that arrives along the segment after a single event, by next-event
+/// estimation (NextEventEstimator); w the direction, sampled by resampled importance sampling of
+/// the phase function or BRDF times the expected light (DirectionSampler); s the distance of the
+/// next vertex (sample_vertex). q is the splitting factor of adjoint-driven Russian roulette and
+/// splitting (Vorba and Krivanek 2016): the expected contribution of what lies ahead over the
+/// pixel's own radiance. On average q branches go on, fewer than one included. If the throughput
+/// alone decided, as in plain roulette, rare paths would be far too bright.
+class PathWalk {
+  public:
+    PathWalk(const PathTables& tables, PathRandom& random, ContributionSink& sink,
+             PathScratch& scratch)
+        : tables_(tables), random_(random), sink_(sink), scratch_(scratch) {}
+
+    /// The work so far: vertices at which a direction was sampled by all that is known, and a
+    /// fraction of each other.
+    double work() const { return work_; }
+
+    /// Follows a path that is scattered at `point` of `segment`.
+    void trace_from_water(PathState state, const WaterSegment& segment, const WaterPoint& point);
+    /// Follows a path that `surface` reflects. Its splitting is relative to what that is expected
+    /// to reflect.
+    void trace_from_surface(PathState state, const SurfaceSample& surface);
+    /// Adds what `surface` reflects of light that was scattered or reflected once before, and no
+    /// more.
+    void trace_mirrored(PathState state, const SurfaceSample& surface);
+
+    /// Follows an analog random walk from `segment`: the path is scattered on it, and on by the
+    /// phase function alone until it meets a surface. Returns the segment that ends there, which
+    /// is valid until the next path, or null if there is none. `state` is that at the surface, its
+    /// throughput with the transmittance.
+    const WaterSegment* walk_to_surface(PathState& state, const WaterSegment& segment);
+    /// Adds the light of the surface at which such a walk has ended, and follows the path on from
+    /// there.
+    void trace_lit_surface(PathState state, const WaterSegment& segment);
+    /// The same, but looks up what is not direct; the path goes on from glossy surfaces only.
+    void trace_lit_surface(PathState state, const WaterSegment& segment,
+                           const IrradianceCache& indirect);
+
+  private:
+    void trace_branches(PathState state, PathSegment& segment,
+                        std::optional<DirectionSampler> vertex);
+
+    // Samples the direction from a vertex; the state is that of the path along it, or the function
+    // returns nothing where the path ends.
+    std::optional<DirectionSample> sample_direction(const DirectionSampler& vertex,
+                                                    PathState& state);
+    ExpectedRadiance expected_around(const Point3& x, const PathState& state) const;
+    double splitting_factor(const PathState& state, const PathSegment& segment,
+                            const DirectionSample& direction) const;
+
+    // Samples the distance of the next vertex and adds it to the path; nothing if the path ends.
+    std::optional<DirectionSampler> sample_vertex(PathState& state, PathSegment& segment);
+    double sample_collisions(const PathState& state, const PathSegment& segment,
+                             std::vector<PathScratch::Collision>& collisions);
+    DirectionSampler add_scattering(PathState& state, const Ray& ray, const WaterPoint& point,
+                                    GuidingDistribution& guides);
+    DirectionSampler add_reflection(PathState& state, const Ray& ray, const SurfaceHit& hit,
+                                    GuidingDistribution& guides);
+    void add_vertex(PathState& state, PathVertex::Kind kind, const Point3& position,
+                    const SurfaceHit* hit = nullptr);
+
+    // Fills the segment along the state's ray, but for its guides and what is expected of it.
+    void trace_segment(const PathState& state, PathSegment& segment);
+    Spectrum transmittance(const WaterSegment& segment);
+    // Goes on along the segment that begins where the water's surface mirrors the path.
+    void follow_mirrored(PathState& state, PathSegment& segment);
+    Ray mirrored_ray(const WaterSegment& segment) const;
+    double water_surface_reflectance(const WaterSegment& segment) const;
+
+    void estimate_next_event(PathState& state, const PathSegment& segment);
+    void add_surface_light(PathState& state, const WaterSegment& segment,
+                           const Spectrum& transmittance);
+    // Sets what is expected of the surface at the segment's end.
+    void expect_surface(const PathState& state, PathSegment& segment);
+    double expected_in_mirror(const PathState& state, const WaterSegment& segment,
+                              const Spectrum& throughput);
+
+    // Steps of the random walk. The weights are those of the bands, over what they lose together.
+    double sample_free_flight(const WaterSegment& segment, const Spectrum& weights,
+                              const Spectrum& transmittance, double u) const;
+    bool collide(PathState& state, const WaterSegment& segment, const Spectrum& weights,
+                 double distance, WaterPoint& point) const;
+    bool meets_surface_before(double distance, const Spectrum& weights, PathState& state,
+                              WaterSegment& segment);
+
+    const PathTables& tables_;
+    PathRandom& random_;
+    ContributionSink& sink_;
+    PathScratch& scratch_;
+    double work_ = 0;
 };
 
 }  // namespace uw
