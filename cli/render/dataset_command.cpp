@@ -68,7 +68,7 @@ class ViewClient : public RunClient {
         const double share = stage == Stage::render ? fraction : 0;
         // Computing species may take longer than all views.
         progress_.update(
-            engine_.clock().share_done(share),
+            engine_.clock().progress(share),
             stage == Stage::particles ? fmt::format("particles: {:.0f} %", 100 * fraction) : "");
     }
 

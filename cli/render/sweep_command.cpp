@@ -175,7 +175,7 @@ class SweepRun : public RunClient {
     }
 
     void tell(Stage stage, double fraction) override {
-        progress_(engine_.clock().share_done(stage == Stage::render ? k_rendering * fraction : 0));
+        progress_(engine_.clock().progress(stage == Stage::render ? k_rendering * fraction : 0));
     }
 
     WantedImage want(std::size_t /*place*/, ImageScene& scene) override {

@@ -270,7 +270,7 @@ PictureRenderer::Layers PictureRenderer::render(const EditedScene& scene, Pictur
     {
         const StopScope scope(quality <= PictureQuality::small ? is_stopping_ : is_outdated_);
         renderer_.render(
-            {.layers = layers, .paths = {.path_factor = share_of_paths(scene, quality, lamp)}});
+            {.layers = layers, .paths = {.path_factor = fraction_of_paths(scene, quality, lamp)}});
     }
     Spectrum brightness;
     if (lamp && renderer_.scene().desc().lamps.front().is_of_scene())
