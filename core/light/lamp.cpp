@@ -127,6 +127,10 @@ double Lamp::relative_intensity(const Vector3& v) const {
     return std::visit([&](const auto& profile) { return profile.relative_intensity(v); }, profile_);
 }
 
+bool Lamp::is_soft() const {
+    return std::holds_alternative<SoftSpotProfile>(profile_);
+}
+
 bool Lamp::has_even_core() const {
     return !mirror_ &&
            std::visit([](const auto& profile) { return profile.has_even_core(); }, profile_);

@@ -153,12 +153,17 @@ class Lamp {
     /// The name of its profile in reports: "spot".
     std::string_view profile_name() const;
 
-    /// Intensity in the direction of `v` (from the origin, any length), relative to axis_intensity:
-    /// 0..1. For a sun, 0 above the water, where `v` points against its light.
+    /// Intensity in the direction of `v` (from the origin; of the length of the way there if this
+    /// is_part(), as the edge of its beam is the softer the nearer it is, else of any length),
+    /// relative to axis_intensity: 0..1. For a sun, 0 above the water, where `v` points against its
+    /// light.
     double relative_intensity(const Vector3& v) const;
     /// Whether a relative intensity of 1 at a point implies 1 everywhere around it, up to the next
     /// break of the profile (append_profile_breaks): the core of a spot.
     bool has_even_core() const;
+    /// Whether the profile may end between two of its breaks, as that of a part of a spot does
+    /// (SoftSpotProfile).
+    bool is_soft() const;
 
     /// A cone outside which the lamp emits no light.
     DirectionCone cone() const;

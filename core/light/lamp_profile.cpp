@@ -260,13 +260,6 @@ SoftSpotProfile::SoftSpotProfile(const SpotProfile& spot, const Vector3& offset,
         std::min(std::max(widest.mean, mean_) + dark_ * widest.deviation, std::numbers::pi));
 }
 
-DirectionCone SoftSpotProfile::cone() const {
-    // The mean of the part is not exactly at the point.
-    constexpr double k_room = 1.1;
-    const double dark = k_room * std::acos(cos_dark_);
-    return {spot_.axis(), dark < std::numbers::pi ? std::cos(dark) : -1};
-}
-
 // The mean of the cosine of an angle with mean m and variance V is nearly cos(m) (1 - V/2), which
 // is 1 - flux / (2 pi).
 SoftSpotProfile::Edge SoftSpotProfile::edge(double displaced) const {
@@ -312,16 +305,18 @@ void SoftSpotProfile::append_breaks(const Ray& ray, const Interval& /*interval*/
                                     const Point3& apex, std::vector<double>& s) const {
     const double deviation = std::sqrt(variance_of(covariance_));
     const double outwards = (dark_ - full_) * deviation, inwards = full_ * deviation;
+    // Close to the point it is deflected no further than to these angles.
+    const double widest = std::acos(cos_dark_), narrowest = std::acos(std::min(1.0, cos_core_));
     const Point3 middle = apex + offset_;
     for (const double part : {0.0, 0.25, 0.5, 0.75, 1.0}) {
-        const double angle = spot_.dark_angle() + part * (spot_.full_angle() - spot_.dark_angle());
+        append_cone_crossings(ray, middle, spot_.axis(),
+                              std::cos(std::lerp(widest, narrowest, part)), s);
+        const double angle = std::lerp(spot_.dark_angle(), spot_.full_angle(), part);
         if (std::sin(angle) < 1e-3) continue;
         const double shift = std::lerp(outwards, inwards, part);
         append_cone_crossings(ray, middle - shift / std::sin(angle) * spot_.axis(), spot_.axis(),
                               std::cos(angle), s);
     }
-    const DirectionCone all = cone();
-    append_cone_crossings(ray, apex, all.axis, all.cosine, s);
     append_nearest_to_axis(ray, middle, spot_.axis(), s);
 }
 

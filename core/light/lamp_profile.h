@@ -166,7 +166,9 @@ class SoftSpotProfile {
     double solid_angle() const { return spot_.solid_angle(); }
     std::optional<double> peak_candelas() const { return std::nullopt; }
     bool has_even_core() const { return false; }
-    DirectionCone cone() const;
+    /// All directions: the middle of the part lies beside the point, and the light close to it
+    /// anywhere around it.
+    DirectionCone cone() const { return {spot_.axis(), -1}; }
     void append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                        std::vector<double>& s) const;
 
@@ -327,7 +329,7 @@ LampProfile softened(const LampProfile& profile, const Vector3& offset, const Ma
 /// - append_breaks(ray, interval, apex, s): appends distances along `ray` so that between those in
 ///   `interval` the profile of a lamp at `apex` is smooth and changes little, as compared with
 ///   where it is brightest in that interval: the edges of its beam and cones of equal intensity
-///   inside.
+///   inside. SoftSpotProfile may end between two of them.
 template <class P>
 concept IsALampProfile = requires(const P& profile, const Vector3& v, const Ray& ray,
                                   const Interval& interval, const Point3& apex,

@@ -418,10 +418,16 @@ void VolumeIntegrator::add_panels(const Ray& ray, std::size_t lamp, const LampPa
         if (panel.length() <= 1e-12 * (1 + middle)) continue;
         if (source.contains(passage.radius(middle))) continue;
         // A panel lies between the edges of the lamp's cone: dark at the midpoint means dark
-        // throughout.
-        const Point3 x = ray.at(middle);
-        const double relative = source.relative_intensity(x - source.origin(x));
-        if (relative == 0) continue;
+        // throughout, but for a soft edge, which lies somewhere within a panel. It is met once
+        // there, as the point nearest to the axis is a break.
+        const auto relative_at = [&](double s) {
+            const Point3 x = ray.at(s);
+            return source.relative_intensity(x - source.origin(x));
+        };
+        const double relative = relative_at(middle);
+        if (relative == 0 &&
+            !(source.is_soft() && (relative_at(panel.begin) > 0 || relative_at(panel.end) > 0)))
+            continue;
         while (next + 1 < distances.size() && distances[next] < middle) ++next;
         while (knot + 2 < profile.s.size() && profile.s[knot + 1] < middle) ++knot;
         double attenuation = max_attenuation_;

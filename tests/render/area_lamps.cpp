@@ -576,5 +576,30 @@ TEST(LampsInView, AllIntegratorsAgreeInTheWaterAroundThem) {
     }
 }
 
+// The edge of a beam, which each point of a lamp draws as soft as its part is wide, seen across.
+TEST(LampsInView, ASpotsSoftEdgeIsTheSameToAllIntegrators) {
+    LampDesc lamp = panel(disk(0.3, 6), {-0.8, 0, 2}, 10);
+    lamp.profile = SpotProfileDesc{.beam = 50, .edge = 4};
+    SceneDesc desc = lamp_in_view(lamp, 12, 9);
+    desc.lamps[0].direction = {1, 0, 0};
+    desc.geometry = {plane_at_z(3)};
+    const std::vector<PixelResult> image = TestScene(desc).image();
+    desc.render.integrator = RenderDesc::Integrator::reference;
+    const std::vector<PixelResult> truth = TestScene(desc).image();
+    desc.render.integrator = RenderDesc::Integrator::planes;
+    desc.render.planes.count = 20000;  // at the edges their error is of first order
+    const std::vector<PixelResult> planes = TestScene(desc).image();
+    double brightest = 0;
+    for (const PixelResult& pixel : truth) brightest = std::max(brightest, pixel.backscatter[1]);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+        // Where the edge fades to nothing, panels do not begin where it does: a hundred-thousandth
+        // of the beam is left out, or added.
+        EXPECT_NEAR(image[i].backscatter[1], truth[i].backscatter[1],
+                    2e-3 * truth[i].backscatter[1] + 1e-5 * brightest);
+        EXPECT_NEAR(planes[i].backscatter[1], truth[i].backscatter[1],
+                    2e-2 * truth[i].backscatter[1] + 1e-5 * brightest);
+    }
+}
+
 }  // namespace
 }  // namespace uw::test
