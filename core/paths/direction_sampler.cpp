@@ -114,16 +114,10 @@ void DirectionSampler::accumulate_guides() {
 }
 
 std::optional<DirectionSample> DirectionSampler::sample(PathRandom& random,
-                                                        const ExpectedRadiance& expected) const {
+                                                        const ExpectedAtVertex& expected) const {
     const double sum = sample_candidates(random, expected), u = random.next();
     if (!(sum > 0)) return std::nullopt;
-    std::span<const Scratch::Candidate> candidates = scratch_->candidates;
-    double target = u * sum;
-    while (candidates.size() > 1 && target >= candidates.front().weight()) {
-        target -= candidates.front().weight();
-        candidates = candidates.subspan(1);
-    }
-    const Scratch::Candidate& chosen = candidates.front();
+    const Scratch::Candidate& chosen = choose_candidate(scratch_->candidates, u * sum);
     DirectionSample sample{.direction = chosen.direction,
                            .weight = {},
                            .radiance = chosen.radiance,
@@ -136,7 +130,7 @@ std::optional<DirectionSample> DirectionSampler::sample(PathRandom& random,
 
 // Returns the sum of the candidates' weights. They are stratified.
 double DirectionSampler::sample_candidates(PathRandom& random,
-                                           const ExpectedRadiance& expected) const {
+                                           const ExpectedAtVertex& expected) const {
     std::vector<Scratch::Candidate>& candidates = scratch_->candidates;
     candidates.clear();
     const double u_guide = random.next(), azimuth_guide = random.next();
@@ -148,8 +142,7 @@ double DirectionSampler::sample_candidates(PathRandom& random,
     const std::span<const GuidingDistribution::Guide> guides = guides_->all();
     const int of_guides = guides.empty() ? 0 : k_direction.candidates_per_technique;
     const int of_local = 2 * k_direction.candidates_per_technique - of_guides;
-    const LampRadianceTable& field = tables_->scattering.field();
-    double sum = 0, sum_of_responses = 0;
+    const LampRadianceTable& field = tables_->lamp_radiance;
     for (int k = 0; k < of_guides + of_local; ++k) {
         Scratch::Candidate candidate;
         if (k < of_guides) {
@@ -184,25 +177,16 @@ double DirectionSampler::sample_candidates(PathRandom& random,
         if (expected.of_surface > 0 && glm::dot(expected.normal, direction) < 0)
             candidate.radiance += expected.of_surface;
         if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;
-        sum += candidate.weight();
-        sum_of_responses += candidate.response / candidate.density;
         candidates.push_back(candidate);
     }
-    if (candidates.empty()) return 0;
-    const double min_radiance = k_direction.min_relative_radiance * sum / sum_of_responses;
-    sum = 0;
-    for (Scratch::Candidate& candidate : candidates) {
-        candidate.radiance = std::max(candidate.radiance, min_radiance);
-        sum += candidate.weight();
-    }
-    return sum;
+    return sum_of_weights(candidates, k_direction.min_relative_radiance);
 }
 
 // The density of the guides' lobes [1/sr]: a sun has two, of which one is for its light that is
 // scattered once.
 double DirectionSampler::guide_pdf(const Vector3& direction) const {
     const std::span<const double> cumulative = scratch_->guide_cumulative;
-    const LampRadianceTable& field = tables_->scattering.field();
+    const LampRadianceTable& field = tables_->lamp_radiance;
     double sum = 0, before = 0;
     for (std::size_t j = 0; j < cumulative.size(); ++j) {
         const GuidingDistribution::Guide& guide = guides_->all()[j];

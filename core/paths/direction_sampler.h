@@ -8,13 +8,14 @@
 #include "core/geometry/surface_reflection.h"
 #include "core/paths/guiding_distribution.h"
 #include "core/paths/path_segment.h"
+#include "core/paths/resampling.h"
 #include "core/paths/scattering_tables.h"
 
 namespace uw {
 
-/// Light that paths may meet beside that of the lamps: from everywhere, and that of a surface which
-/// lies across `normal`, as it arrives [W m^-2 sr^-1].
-struct ExpectedRadiance {
+/// Light that a path may meet beyond a vertex, beside that of the lamps: from everywhere, and that
+/// of a surface which lies across `normal`, as it arrives [W m^-2 sr^-1].
+struct ExpectedAtVertex {
     double ambient = 0, of_surface = 0;
     Vector3 normal{0, 0, 1};
 };
@@ -44,12 +45,10 @@ class DirectionSampler {
   public:
     /// Memory that is kept so that paths do not allocate; no two samplers use it at a time.
     struct Scratch {
-        struct Candidate {
+        /// The response is f, the density N p.
+        struct Candidate : ResamplingCandidate {
             Vector3 direction{0, 0, 1};
-            double radiance = 0, of_particles = 0;  // as in DirectionSample
-            double response = 0;                    // f, summed over the bands with the throughput
-            double density = 0;                     // N p
-            double weight() const { return response * radiance / density; }
+            double of_particles = 0;  // as in DirectionSample
         };
 
         SurfaceSample surface;
@@ -73,11 +72,11 @@ class DirectionSampler {
     /// Samples a direction, where `expected` is known beside the light of the lamps. Uses five
     /// random numbers; empty where nothing responds.
     std::optional<DirectionSample> sample(PathRandom& random,
-                                          const ExpectedRadiance& expected) const;
+                                          const ExpectedAtVertex& expected) const;
 
   private:
     void accumulate_guides();
-    double sample_candidates(PathRandom& random, const ExpectedRadiance& expected) const;
+    double sample_candidates(PathRandom& random, const ExpectedAtVertex& expected) const;
     void eval(const Vector3& direction, Spectrum& values) const;
     Vector3 sample_local(double u, double v, double azimuth) const;
     double local_pdf(const Vector3& direction) const;

@@ -60,7 +60,8 @@ GuidingTables::GuidingTables(const WaterOptics& of_optics, const ScatteringTable
     : optics(of_optics),
       scattering(of_scattering),
       lamps(of_lamps),
-      particles(of_optics, of_scattering.field(), of_lamps) {
+      lamp_radiance(of_scattering.lamp_radiance()),
+      particles(of_optics, lamp_radiance, of_lamps) {
     const auto sum = [](const OpticalCoefficients& coefficients) {
         Spectrum all;
         for (const Spectrum& b : coefficients.scattering) all += b;
@@ -76,7 +77,7 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
     tables_ = &tables;
     guides_.clear();
     const WaterOptics& optics = tables.optics;
-    const LampRadianceTable& field = tables.scattering.field();
+    const LampRadianceTable& field = tables.lamp_radiance;
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
     const std::size_t bands = optics.bands(), stride = band_stride(bands);
     const double all = sum_of_guiding_bands(weights, bands);
@@ -118,7 +119,7 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
 }
 
 double GuidingDistribution::radiance(const Vector3& direction) const {
-    const LampRadianceTable& field = tables_->scattering.field();
+    const LampRadianceTable& field = tables_->lamp_radiance;
     double light = 0;
     for (const Guide& guide : guides_) {
         const double h = half_tangent_between(guide.direction, direction);
@@ -131,7 +132,7 @@ double GuidingDistribution::radiance(const Vector3& direction) const {
 }
 
 double GuidingDistribution::multiple(const Vector3& direction) const {
-    const LampRadianceTable& field = tables_->scattering.field();
+    const LampRadianceTable& field = tables_->lamp_radiance;
     double light = 0;
     for (const Guide& guide : guides_)
         light += guide.scale *
@@ -140,7 +141,7 @@ double GuidingDistribution::multiple(const Vector3& direction) const {
 }
 
 double GuidingDistribution::source(const Point3& y, const Vector3& direction) const {
-    const LampRadianceTable& field = tables_->scattering.field();
+    const LampRadianceTable& field = tables_->lamp_radiance;
     double light = 0;
     for (const Guide& guide : guides_) {
         const Lamp& lamp = (*tables_->optics.scene().emitters)[guide.lamp];
@@ -158,7 +159,7 @@ double GuidingDistribution::source(const Point3& y, const Vector3& direction) co
 double estimated_reflection(const GuidingTables& tables, const SurfaceHit& hit,
                             const Spectrum& weights) {
     const WaterOptics& optics = tables.optics;
-    const LampRadianceTable& field = tables.scattering.field();
+    const LampRadianceTable& field = tables.lamp_radiance;
     thread_local std::vector<double> column;
     column.resize(optics.constituents());
     const std::size_t bands = optics.bands(), stride = band_stride(bands);

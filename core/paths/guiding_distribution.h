@@ -19,6 +19,7 @@ struct GuidingTables {
     const WaterOptics& optics;
     const ScatteringTables& scattering;
     const NextEventEstimator& lamps;
+    const LampRadianceTable& lamp_radiance;  // made once, so that look-ups take no lock
     // b by band, summed over the phase functions: of the uniform water, and of the constituents per
     // unit.
     Spectrum uniform_scattering;

@@ -197,7 +197,6 @@ struct CameraSegment {
     /// Where the paths' first scattering lies: running sums of weights of the intervals between
     /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
     std::vector<double> distances, cumulative;
-    using Expected = ExpectedLight;
     ExpectedLight expected;
     /// The mean numbers of paths of each kind that are traced in place of one: fewer where they
     /// bring less of the ray's light than others.

@@ -169,8 +169,8 @@ std::optional<DirectionSample> PathWalk::sample_direction(const DirectionSampler
 }
 
 // The surface that the path has left may be met again: all that is below its plane.
-ExpectedRadiance PathWalk::expected_around(const Point3& x, const PathState& state) const {
-    ExpectedRadiance expected{.ambient = k_expectation_options.ambient_of_direction *
+ExpectedAtVertex PathWalk::expected_around(const Point3& x, const PathState& state) const {
+    ExpectedAtVertex expected{.ambient = k_expectation_options.ambient_of_direction *
                                          state.expected.ambient};
     const PathState::LeftSurface& left = state.left;
     if (tables_.optics.scene().water_surface)
@@ -215,24 +215,19 @@ std::optional<DirectionSampler> PathWalk::sample_vertex(PathState& state, PathSe
     for (;;) {
         const double surface = segment.surface_contribution;
         const double sum = sample_collisions(state, segment, collisions) + surface;
-        double target = random_.next() * sum;
+        const double target = random_.next() * sum;
         if (!(sum > 0)) return std::nullopt;
         const WaterSegment& water = segment.water;
         if (!(target < surface)) {
             if (collisions.empty()) return std::nullopt;  // by rounding
-            target -= surface;
-            std::size_t i = 0;
-            while (i + 1 < collisions.size() && target >= collisions[i].weight())
-                target -= collisions[i++].weight();
-            const PathScratch::Collision& chosen = collisions[i];
+            const PathScratch::Collision& chosen = choose_candidate(collisions, target - surface);
             WaterPoint& point = scratch_.point;
             optics.look_up(water, chosen.distance, point);
             optics.find_scattering(point);
             Spectrum transmittance;
             optics.transmittances(chosen.distance, point.column, transmittance);
             for (std::size_t b = 0; b < bands; ++b)
-                state.throughput[b] *=
-                    transmittance[b] * sum / (chosen.scattering * chosen.radiance);
+                state.throughput[b] *= transmittance[b] * sum / (chosen.response * chosen.radiance);
             return add_scattering(state, water.ray, point, segment.guides);
         }
         for (std::size_t b = 0; b < bands; ++b)
@@ -290,10 +285,10 @@ double PathWalk::sample_collisions(const PathState& state, const PathSegment& se
                 options.candidates * weights[b] * attenuation[b] * transmittance[b] / lost;
             double scattering = 0;
             for (const Spectrum& m : point.scattering) scattering += m[b];
-            collision.scattering += state.throughput[b] * transmittance[b] * scattering;
+            collision.response += state.throughput[b] * transmittance[b] * scattering;
             clearest = std::max(clearest, transmittance[b]);
         }
-        if (!(collision.density > 0) || !(collision.scattering > 0)) continue;
+        if (!(collision.density > 0) || !(collision.response > 0)) continue;
         const Point3 x = segment.water.ray.at(collision.distance);
         collision.radiance = segment.guides.source(x, segment.water.ray.direction) +
                              tables_.guides.particles.at(x) +
@@ -304,19 +299,7 @@ double PathWalk::sample_collisions(const PathState& state, const PathSegment& se
                 segment.surface_radiance * std::sqrt(std::min(1.0, to_surface / clearest));
         if (collision.radiance > 0) collisions.push_back(collision);
     }
-    double sum = 0, sum_of_scattering = 0;
-    for (const PathScratch::Collision& collision : collisions) {
-        sum += collision.weight();
-        sum_of_scattering += collision.scattering / collision.density;
-    }
-    if (!(sum > 0)) return 0;
-    const double min_radiance = options.min_relative_radiance * sum / sum_of_scattering;
-    sum = 0;
-    for (PathScratch::Collision& collision : collisions) {
-        collision.radiance = std::max(collision.radiance, min_radiance);
-        sum += collision.weight();
-    }
-    return sum;
+    return sum_of_weights(collisions, options.min_relative_radiance);
 }
 
 DirectionSampler PathWalk::add_scattering(PathState& state, const Ray& ray, const WaterPoint& point,

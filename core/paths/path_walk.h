@@ -31,12 +31,8 @@ struct PathSegment {
 /// paths use it at a time.
 struct PathScratch {
     /// Where a path may be scattered next on its segment.
-    struct Collision {
+    struct Collision : ResamplingCandidate {  // the response is b [1/m]
         double distance = 0;
-        double radiance = 0;    // expected to be scattered along the path there
-        double scattering = 0;  // b, summed over the bands with the throughput up to there [1/m]
-        double density = 0;     // of the candidates there, times their number [1/m]
-        double weight() const { return scattering * radiance / density; }
     };
 
     PathSegment segment;
@@ -99,7 +95,7 @@ class PathWalk {
     // returns nothing where the path ends.
     std::optional<DirectionSample> sample_direction(const DirectionSampler& vertex,
                                                     PathState& state);
-    ExpectedRadiance expected_around(const Point3& x, const PathState& state) const;
+    ExpectedAtVertex expected_around(const Point3& x, const PathState& state) const;
     double splitting_factor(const PathState& state, const PathSegment& segment,
                             const DirectionSample& direction) const;
 

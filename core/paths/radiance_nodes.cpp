@@ -214,7 +214,7 @@ void RadianceEstimator::begin(const SurfaceSample& sample, bool has_hit, Workspa
                                    reflection.is_glossy()};
     }
     transport_.paths->begin(sample.ray, has_hit ? &sample.hit : nullptr, w.direct, w.segment);
-    const CameraSegment::Expected& expected = w.segment.expected;
+    const ExpectedLight& expected = w.segment.expected;
     node.mean_light = expected.is_known ? expected.pixel : 0;
     node.estimated_water = expected.pixel - expected.of_surface;
     if (!has_hit) return;
@@ -244,7 +244,7 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
     // Paths in the water alone are not guided by the surface.
     transport_.paths->begin(*ray, has_hit ? &hit : nullptr, {}, w.segment);
     w.segment.paths = {};
-    CameraSegment::Expected& expected = w.segment.expected;
+    ExpectedLight& expected = w.segment.expected;
     if (expected.is_known) expected.pixel = std::max(expected.pixel, node.mean_light);
     if (expected.is_known && weights_.vary()) {
         // Particles may be lit anywhere, which the lamps' guides do not know. The typical light is

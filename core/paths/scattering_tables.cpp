@@ -62,13 +62,13 @@ ScatteringTables::ScatteringTables(const Medium& medium,
     for (const Constituent& constituent : medium.constituents) include(constituent.per_unit);
 }
 
-const LampRadianceTable& ScatteringTables::field() const {
-    const std::lock_guard lock(field_mutex_);
-    if (!field_) field_ = make_field();
-    return *field_;
+const LampRadianceTable& ScatteringTables::lamp_radiance() const {
+    const std::lock_guard lock(lamp_radiance_mutex_);
+    if (!lamp_radiance_) lamp_radiance_ = make_lamp_radiance();
+    return *lamp_radiance_;
 }
 
-LampRadianceTable ScatteringTables::make_field() const {
+LampRadianceTable ScatteringTables::make_lamp_radiance() const {
     std::vector<double> p(phase_count()), of_direction, of_line;
     for (const double h : HalfTangentDensity::nodes()) {
         phase(h, p);

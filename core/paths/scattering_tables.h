@@ -28,9 +28,9 @@ struct ScatteringTables {
     /// The radiance around a point lamp by all orders of scattering, for the mean phase function
     /// and the albedos of all that the water may contain. Computed on first use, in about 0.1 s, or
     /// 0.02 s if it is coarse.
-    const LampRadianceTable& field() const;
+    const LampRadianceTable& lamp_radiance() const;
 
-    /// `fineness`: of `field`.
+    /// `fineness`: of `lamp_radiance`.
     explicit ScatteringTables(const Medium& medium,
                               const LampRadianceTable::Fineness& fineness = {});
     ScatteringTables(const ScatteringTables&) = delete;
@@ -46,12 +46,12 @@ struct ScatteringTables {
     }
 
   private:
-    LampRadianceTable make_field() const;
+    LampRadianceTable make_lamp_radiance() const;
 
     LampRadianceTable::Fineness fineness_;
     double min_albedo_ = 1, max_albedo_ = 0;
-    mutable std::mutex field_mutex_;
-    mutable std::optional<LampRadianceTable> field_;  // computed on first use
+    mutable std::mutex lamp_radiance_mutex_;
+    mutable std::optional<LampRadianceTable> lamp_radiance_;  // computed on first use
 };
 
 }  // namespace uw

@@ -171,7 +171,7 @@ class RadianceEstimate {
             if (is_surface) find_direct(sample, leaving);
             transport_.paths->begin(ray, has_hit ? &sample.hit : nullptr, leaving.first(bands_),
                                     segment_);
-            CameraSegment::Expected& expected = segment_.expected;
+            ExpectedLight& expected = segment_.expected;
             expected.pixel = std::max(expected.pixel, typical_);
             expected.ambient = std::max(expected.ambient, typical_ / k_ambient_beyond);
             const auto stream = [&](std::uint64_t kind) {

@@ -22,7 +22,7 @@ TEST(LampRadianceTable, ApproximatesTheExactTables) {
     int count = 0;
     for (const TableRow& row : read_path_table("point_lamp_hg09_albedo08_radiance.csv", false)) {
         const double h = std::tan(0.5 * row.psi_degrees * std::numbers::pi / 180);
-        const LampRadianceTable& field = tables.field();
+        const LampRadianceTable& field = tables.lamp_radiance();
         const LampRadianceTable::Place place = field.at(row.r, 0.8);
         // A guide may be off by a third, as the numbers of paths depend on its square root.
         EXPECT_NEAR(field.radiance(place, h) / row.total, 1, 0.35)
@@ -41,7 +41,8 @@ TEST(LampRadianceTable, LosesEnergyWithDistance) {
         for (const double albedo : {0.2, 0.6, 0.99}) {
             double before = 1 + 1e-12;
             for (double r = 0x1p-9; r < 100; r *= 1.07) {
-                const double flux = tables.field().flux(tables.field().at(r, albedo));
+                const double flux =
+                    tables.lamp_radiance().flux(tables.lamp_radiance().at(r, albedo));
                 EXPECT_LE(flux, before) << g << " " << albedo << " " << r;
                 EXPECT_GE(flux, std::exp(-std::max(r, 0x1p-8)) * (1 - 1e-3))
                     << g << " " << albedo << " " << r;
