@@ -490,7 +490,7 @@ void SnowPass::run(Rendering& rendering) {
                               .veil = veil,
                               .sensor = sensor};
     const PixelWindow& window = rendering.film.window();
-    const SnowSplats splats = placing.splats(window, rendering.progress_of(stage()));
+    const SnowSplats splats = placing.splats(window, rendering.progress_of(*stage()));
     rendering.reached.snow_particles = splats.splats.size();
     layer_.emplace(SnowImage(window, model.water.wavelengths_nm.size(), splats), std::move(veil),
                    depth);

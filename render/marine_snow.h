@@ -105,7 +105,7 @@ struct SnowPlacing {
 class SnowPass final : public Pass {
   public:
     explicit SnowPass(const SnowDesc& desc)
-        : Pass("snow"), in_ground_truth_(desc.in_ground_truth) {}
+        : Pass(Stage::snow), in_ground_truth_(desc.in_ground_truth) {}
 
     void provide(LayerSupply& supply) const override;
     void begin(Rendering& rendering) override;

@@ -65,10 +65,10 @@ class ViewClient : public RunClient {
 
     void tell(Stage stage, double fraction) override {
         // Nearly all the time that a view takes is this stage.
-        const double share = stage == Stage::render ? fraction : 0;
+        const double rendered = stage == Stage::render ? fraction : 0;
         // Computing species may take longer than all views.
         progress_.update(
-            engine_.clock().progress(share),
+            engine_.clock().progress(rendered),
             stage == Stage::particles ? fmt::format("particles: {:.0f} %", 100 * fraction) : "");
     }
 

@@ -213,7 +213,7 @@ class WorthOfTerms final : public ContributionSink {
     std::vector<double> factors_, weighted_;
     std::optional<PathRandom> random_;  // none: all contributions are used
     std::vector<Kept> kept_;
-    // Of each kept contribution: weighted radiance, columns and concentrations.
+    // The weighted radiance, columns and concentrations of each kept contribution.
     std::vector<double> values_;
     double total_ = 0;
 };

@@ -444,7 +444,7 @@ void ForwardScattering::write(const LayerPlan& plan, const BandColour& colour, F
     });
 }
 
-ForwardScatterPass::ForwardScatterPass() : Pass("forward scatter") {}
+ForwardScatterPass::ForwardScatterPass() : Pass(Stage::forward_scatter) {}
 ForwardScatterPass::~ForwardScatterPass() = default;
 
 PassNeeds ForwardScatterPass::needs(const LayerPlan& /*plan*/) const {
@@ -462,7 +462,7 @@ void ForwardScatterPass::begin(Rendering& rendering) {
 }
 
 void ForwardScatterPass::run(Rendering& rendering) {
-    scattering_->run(rendering.progress_of(stage()));
+    scattering_->run(rendering.progress_of(*stage()));
     scattering_->write(rendering.plan, rendering.colour, rendering.film);
     scattering_.reset();
 }

@@ -616,7 +616,7 @@ bool has_light(const PixelRenderer& pixels) {
 }  // namespace
 
 MultipleScatteringPass::MultipleScatteringPass(double path_factor)
-    : Pass("multiple scattering"), path_factor_(path_factor) {}
+    : Pass(Stage::multiple_scattering), path_factor_(path_factor) {}
 MultipleScatteringPass::~MultipleScatteringPass() = default;
 
 PassNeeds MultipleScatteringPass::needs(const LayerPlan& /*plan*/) const {
@@ -645,7 +645,7 @@ void MultipleScatteringPass::run(Rendering& rendering) {
     options.error /= std::sqrt(path_factor_);
     options.lamps = rendering.plan.has_lamps();
     light_ = std::make_unique<MultipleScattering>(rendering.pixels, options);
-    light_->prepare(rendering.film.window(), rendering.progress_of(stage()));
+    light_->prepare(rendering.film.window(), rendering.progress_of(*stage()));
     sums_ = std::make_unique<ErrorSums>(rendering.film.window(),
                                         static_cast<std::size_t>(rendering.pixels.band_count()));
 }

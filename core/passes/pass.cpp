@@ -39,7 +39,7 @@ void PassList::run(Pass::Of of, Rendering& rendering) {
         if (pass->of() == of) pass->begin(rendering);
     for (const auto& pass : passes_) {
         if (pass->of() != of) continue;
-        if (!pass->stage().empty()) rendering.progress(pass->stage(), 0);
+        if (pass->stage()) rendering.progress(*pass->stage(), 0);
         throw_if_stopped();
         pass->run(rendering);
     }

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -90,7 +89,7 @@ struct Rendering {
     std::vector<PixelStep> steps{};
 
     /// Returns a callback that reports the progress of this stage to `progress`.
-    ProgressCallback progress_of(const std::string& stage) const {
+    ProgressCallback progress_of(Stage stage) const {
         return [this, stage](double fraction) { progress(stage, fraction); };
     }
 };
@@ -115,13 +114,13 @@ class Pass {
         image,  ///< the whole image, after everything else
     };
 
-    /// `stage` is the name under which progress is reported; empty for a pass that takes no time.
-    explicit Pass(std::string stage, Of of = Of::light) : stage_(std::move(stage)), of_(of) {}
+    /// `stage`: whose progress it reports; none for a pass that takes no time.
+    explicit Pass(std::optional<Stage> stage, Of of = Of::light) : stage_(stage), of_(of) {}
     virtual ~Pass() = default;
     Pass(const Pass&) = delete;
     Pass& operator=(const Pass&) = delete;
 
-    const std::string& stage() const { return stage_; }
+    std::optional<Stage> stage() const { return stage_; }
     Of of() const { return of_; }
 
     /// What the pass needs for an image with these layers.
@@ -139,7 +138,7 @@ class Pass {
     virtual void end(Rendering& rendering);
 
   private:
-    std::string stage_;
+    std::optional<Stage> stage_;
     Of of_;
 };
 

@@ -365,7 +365,7 @@ PathTrial PathPixels::run_trial(int paths) const {
     return all;
 }
 
-// Of paths with variance v and cost t, numbers in proportion to sqrt(v / t) minimize the variance
+// For paths with variance v and cost t, numbers in proportion to sqrt(v / t) minimize the variance
 // for a given time: 1 / (variance * time) is greatest (Veach 1997).
 void PathPixels::allocate_paths(int samples) {
     constexpr int k_min = 8, k_max = 64;  // paths of a kind at each place
@@ -583,7 +583,7 @@ int samples_of_next_round(const PathGoal& goal, const PathAccuracy& so_far) {
 }
 
 PathPass::PathPass(const RenderDesc& render, const PathRequest& request)
-    : Pass("render"),
+    : Pass(Stage::render),
       request_(request),
       has_error_(request.error || samples_of(render) > 1),
       needs_slabs_(render.planes.near || render.planes.far) {}
@@ -601,7 +601,7 @@ void PathPass::provide(LayerSupply& supply) const {
 void PathPass::run(Rendering& rendering) {
     const LayerPlan& plan = rendering.plan;
     const PathGoal goal{samples_of(rendering.desc.render), request_.error};
-    const ProgressCallback progress = rendering.progress_of(stage());
+    const ProgressCallback progress = rendering.progress_of(*stage());
     PathPixels pixels(rendering.pixels, plan.order_count());
     pixels.allocate_paths(goal.error ? k_initial_samples : goal.samples);
     Film& film = rendering.film;

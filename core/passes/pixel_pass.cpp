@@ -181,7 +181,7 @@ void render_tiles(const PixelRenderer& renderer, double in_scatter_tolerance,
 }
 
 PixelPass::PixelPass(const RenderDesc& render)
-    : Pass("render"),
+    : Pass(Stage::render),
       in_scatter_tolerance_(uw::in_scatter_tolerance(render)),
       needs_light_(integrator_kind(render.integrator).needs_deep_shadows),
       needs_slabs_(integrator_kind(render.integrator).sums_slabs || render.planes.near ||
@@ -194,7 +194,7 @@ PassNeeds PixelPass::needs(const LayerPlan& plan) const {
 void PixelPass::run(Rendering& rendering) {
     Film& film = rendering.film;
     render_tiles(rendering.pixels, in_scatter_tolerance_, rendering.steps, film.window(),
-                 rendering.progress_of(stage()), [&](int x, int y, const PixelResult& pixel) {
+                 rendering.progress_of(*stage()), [&](int x, int y, const PixelResult& pixel) {
                      store_pixel(pixel, rendering.plan, rendering.colour, film.pixel(x, y));
                      if (pixel.shows_lamp) film.mark_lamp(x, y);
                  });

@@ -3,7 +3,7 @@
 namespace uw {
 
 SensorPass::SensorPass(const SensorDesc& desc, std::int64_t frame)
-    : Pass({}, Of::image), value_count_(value_count(desc.mosaic)), frame_(frame) {}
+    : Pass(std::nullopt, Of::image), value_count_(value_count(desc.mosaic)), frame_(frame) {}
 
 void SensorPass::provide(LayerSupply& supply) const {
     supply.layers |= {Layer::sensor};

@@ -108,7 +108,7 @@ struct SnowPixel {
     std::span<const float> radiance;  // by band, of all particles [W m^-2 sr^-1]
     double transparency = 1;          // fraction of a surface that stays visible
     double water = 1;                 // fraction of the in-scattered light that stays visible
-    /// Of the first particle that covers at least half of the pixel [m]; 0: none does.
+    /// The distance of the first particle that covers at least half of the pixel [m]; 0: none does.
     double particle_distance = 0;
 };
 

@@ -12,7 +12,7 @@ class TruthPass final : public Pass {
     /// The arguments say whether the scene has other frames and other cameras in which points can
     /// be found.
     TruthPass(bool has_other_frames, bool has_other_cameras)
-        : Pass({}, Of::truth),
+        : Pass(std::nullopt, Of::truth),
           has_other_frames_(has_other_frames),
           has_other_cameras_(has_other_cameras) {}
 

@@ -450,7 +450,7 @@ SunColumnMap::SunColumnMap(const ConcentrationField& of, const Sunlight& sun, do
     height_ = static_cast<int>(std::ceil((most.v - least.v) / texel_)) + 3;
     const auto march = [&](int x, int y, ConcentrationProfile& profile) {
         const double u = first_.u + x * texel_, v = first_.v + y * texel_;
-        // Of a field that extends out of the water, only the part below the surface counts.
+        // Only the part below the surface counts if a field extends out of the water.
         const double begin = std::clamp(frame_.entry_depth(u, v), first_.depth, most.depth);
         field.profile_within(tolerance, {frame_.world({u, v, begin}), sun.direction},
                              most.depth - begin + texel_, profile);

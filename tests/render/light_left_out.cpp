@@ -32,7 +32,7 @@ class LeftOut : public testing::Test {
         return left_out_note(renderer_.assembled(), left_out);
     }
     /// The share of the layer `multiple` in an image of many paths.
-    double share_in_image() {
+    double fraction_in_image() {
         SceneDesc all = desc_;
         all.render.integrator = RenderDesc::Integrator::path;
         all.render.scattering = RenderDesc::Scattering::multiple;
@@ -56,13 +56,13 @@ class LeftOut : public testing::Test {
     Renderer renderer_;
 };
 
-TEST_F(LeftOut, IsTheShareOfMultipleInTheImage) {
+TEST_F(LeftOut, IsTheFractionOfMultipleInTheImage) {
     const LightLeftOut left_out = estimate().value();
-    const double share = share_in_image();
-    EXPECT_GT(share, 0.2);
+    const double fraction = fraction_in_image();
+    EXPECT_GT(fraction, 0.2);
     EXPECT_GT(left_out.error, 0);
     // Three errors, and 0.03 for the places between those that are looked at.
-    EXPECT_NEAR(left_out.fraction, share, 3 * left_out.error + 0.03);
+    EXPECT_NEAR(left_out.fraction, fraction, 3 * left_out.error + 0.03);
     EXPECT_LT(left_out.error, 0.1);
 }
 

@@ -15,12 +15,14 @@ namespace {
 /// Writes down when it begins and is run.
 class NotingPass final : public Pass {
   public:
-    NotingPass(std::vector<std::string>& notes, const std::string& name, Of of = Of::light)
-        : Pass(name, of), notes_(notes) {}
-    void begin(Rendering& /*rendering*/) override { notes_.push_back("begin " + stage()); }
-    void run(Rendering& /*rendering*/) override { notes_.push_back("run " + stage()); }
+    NotingPass(std::vector<std::string>& notes, Stage stage, Of of = Of::light)
+        : Pass(stage, of), notes_(notes) {}
+    void begin(Rendering& /*rendering*/) override { note("begin "); }
+    void run(Rendering& /*rendering*/) override { note("run "); }
 
   private:
+    void note(std::string what) { notes_.push_back(what.append(name_of(*stage()))); }
+
     std::vector<std::string>& notes_;
 };
 
@@ -67,9 +69,9 @@ TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
                         .progress = progress,
                         .reached = reached};
     PassList passes;
-    passes.add<NotingPass>(notes, "snow");
-    passes.add<NotingPass>(notes, "reflection", Pass::Of::truth);
-    passes.add<NotingPass>(notes, "render");
+    passes.add<NotingPass>(notes, Stage::snow);
+    passes.add<NotingPass>(notes, Stage::reflection, Pass::Of::truth);
+    passes.add<NotingPass>(notes, Stage::render);
     passes.run(Pass::Of::light, rendering);
     EXPECT_EQ(notes, (std::vector<std::string>{"begin snow", "begin render", "stage snow",
                                                "run snow", "stage render", "run render"}));
