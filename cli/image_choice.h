@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/scene/scene_desc.h"
-#include "run/job.h"
+#include "render/run/job.h"
 
 namespace uw {
 

@@ -30,8 +30,8 @@ get_property(uwvdb_printed GLOBAL PROPERTY UWVDB_PRINTED)
 add_custom_target(uwvdb_printed ALL DEPENDS ${uwvdb_printed})
 
 # The Blender add-on, as Blender installs it.
-file(GLOB uwvdb_blender_files CONFIGURE_DEPENDS blender/uwvdb_blender/*.py
-     blender/uwvdb_blender/*.toml)
+file(GLOB uwvdb_blender_files CONFIGURE_DEPENDS python/blender/uwvdb_blender/*.py
+     python/blender/uwvdb_blender/*.toml)
 set(uwvdb_blender_addon ${PROJECT_BINARY_DIR}/blender/uwvdb_blender.zip)
 add_custom_command(OUTPUT ${uwvdb_blender_addon}
     COMMAND ${PROJECT_SOURCE_DIR}/scripts/blender-addon ${uwvdb_blender_addon}

@@ -34,10 +34,10 @@
 #include "render/derivatives.h"
 #include "render/image_header.h"
 #include "render/image_scene.h"
+#include "render/run/job.h"
+#include "render/run/run_engine.h"
 #include "render/scene_loading.h"
-#include "run/job.h"
-#include "run/run_engine.h"
-#include "validation/validation.h"
+#include "render/validation/validation.h"
 
 namespace py = pybind11;
 

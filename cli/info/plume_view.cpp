@@ -17,8 +17,8 @@
 #include "media/volumes/stratified_field.h"
 #include "render/measures/picture_numbers.h"
 #include "render/renderer.h"
+#include "render/run/draft.h"
 #include "render/scene_loading.h"
-#include "run/draft.h"
 
 namespace uw {
 

@@ -36,7 +36,7 @@ struct DraftContrast {
 DraftContrast compare_drafts(const AssembledScene& scene, const Film& with, const Film& without);
 
 /// The scene of a draft by the fast integrator, with the light that the scene asks for, scattered
-/// once or all of it, at most `width` pixels wide (run/draft.h).
+/// once or all of it, at most `width` pixels wide (render/run/draft.h).
 ImageScene quick_draft_of(const ImageScene& scene, int width);
 
 /// The width of drafts, and of the finer ones for volumes that are too small to be visible in them.

@@ -34,9 +34,9 @@
 #include "dataset/view.h"
 #include "render/image_scene.h"
 #include "render/light_left_out.h"
-#include "run/draft.h"
-#include "run/job.h"
-#include "run/run_engine.h"
+#include "render/run/draft.h"
+#include "render/run/job.h"
+#include "render/run/run_engine.h"
 
 namespace uw {
 

@@ -10,8 +10,8 @@
 #include "cli/render/frame_sequence.h"
 #include "cli/render/render_arguments.h"
 #include "cli/render/run_stats.h"
-#include "run/exposure.h"
-#include "run/run_engine.h"
+#include "render/run/exposure.h"
+#include "render/run/run_engine.h"
 
 namespace uw {
 

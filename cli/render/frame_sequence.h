@@ -13,8 +13,8 @@
 #include "core/image/film.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/sensor_desc.h"
+#include "render/run/job.h"
 #include "render/scene_loading.h"
-#include "run/job.h"
 
 namespace uw {
 

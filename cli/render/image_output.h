@@ -10,7 +10,7 @@
 #include "core/image/colour_view.h"
 #include "core/image/exr_file.h"
 #include "core/scene/sensor_desc.h"
-#include "run/run_engine.h"
+#include "render/run/run_engine.h"
 
 namespace uw {
 

@@ -9,9 +9,9 @@
 #include "cli/command.h"
 #include "cli/render/picture_numbers.h"
 #include "core/image/exr_file.h"
+#include "render/run/exposure.h"
 #include "render/scene_loading.h"
 #include "render/scene_rendering.h"
-#include "run/exposure.h"
 
 namespace uw {
 

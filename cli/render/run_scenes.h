@@ -9,8 +9,8 @@
 #include "cli/render/frame_sequence.h"
 #include "cli/render/render_arguments.h"
 #include "core/scene/variations.h"
+#include "render/run/job.h"
 #include "render/scene_loading.h"
-#include "run/job.h"
 
 namespace uw {
 

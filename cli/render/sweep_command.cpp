@@ -22,9 +22,9 @@
 #include "core/base/text.h"
 #include "core/scene/key_path.h"
 #include "core/scene/render_desc.h"
+#include "render/run/draft.h"
+#include "render/run/run_engine.h"
 #include "render/scene_loading.h"
-#include "run/draft.h"
-#include "run/run_engine.h"
 
 namespace uw {
 

@@ -12,7 +12,7 @@
 #include "core/base/progress.h"
 #include "render/measures/picture_numbers.h"
 #include "render/measures/target_probe.h"
-#include "run/job.h"
+#include "render/run/job.h"
 
 namespace uw {
 

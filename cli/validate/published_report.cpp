@@ -16,7 +16,7 @@
 #include "cli/html_page.h"
 #include "cli/svg_plot.h"
 #include "core/base/version.h"
-#include "validation/published_tables.h"
+#include "render/validation/published_tables.h"
 
 namespace uw {
 

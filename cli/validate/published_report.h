@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "validation/published.h"
+#include "render/validation/published.h"
 
 namespace uw {
 

@@ -21,8 +21,8 @@
 #include "render/image_scene.h"
 #include "render/scene_loading.h"
 #include "render/scene_rendering.h"
-#include "validation/built_in_suite.h"
-#include "validation/published.h"
+#include "render/validation/built_in_suite.h"
+#include "render/validation/published.h"
 
 namespace uw {
 

@@ -11,7 +11,7 @@
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/image/colour.h"
-#include "validation/validation_methods.h"
+#include "render/validation/validation_methods.h"
 
 namespace uw {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "validation/validation.h"
+#include "render/validation/validation.h"
 
 namespace uw {
 

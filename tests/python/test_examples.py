@@ -10,7 +10,7 @@ import pytest
 
 from conftest import ROOT
 
-EXAMPLES = ROOT / "examples/python"
+EXAMPLES = ROOT / "docs/examples/python"
 
 
 def run_example(name, *arguments, folder):

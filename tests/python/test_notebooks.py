@@ -9,7 +9,7 @@ import pytest
 
 from conftest import ROOT
 
-FOLDER = ROOT / "examples/notebooks"
+FOLDER = ROOT / "docs/examples/notebooks"
 NOTEBOOKS = sorted(file.stem for file in FOLDER.glob("*.ipynb"))
 # Quicker than what is written there.
 SMALLER = {"[240, 160]": "[24, 16]", "[240, 135]": "[24, 14]", "(32, 24)": "(12, 9)",

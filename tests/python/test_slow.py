@@ -39,7 +39,7 @@ def test_validation(scene):
 def test_notebooks_run_in_jupyter(tmp_path):
     subprocess.run([ROOT / "scripts/notebooks", BUILD, tmp_path], check=True)
     assert sorted(file.name for file in tmp_path.glob("*.ipynb")) == sorted(
-        file.name for file in (ROOT / "examples/notebooks").glob("*.ipynb"))
+        file.name for file in (ROOT / "docs/examples/notebooks").glob("*.ipynb"))
 
 
 def resident_bytes():

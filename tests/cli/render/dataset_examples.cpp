@@ -1,5 +1,5 @@
 // ctest labels: metamorphic
-// The programs of examples/datasets, on small sets of the scene that they name.
+// The programs of docs/examples/datasets, on small sets of the scene that they name.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -26,10 +26,10 @@ class DatasetExamples : public test::DatasetTest {
     std::string output_of(const std::string& program, const std::string& environment = "") const {
         // The packages' Python has NumPy; another one may come before it in PATH.
         const std::string command =
-            environment +
-            fmt::format(
-                "PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 '{}/examples/datasets/{}' '{}' 2>&1",
-                UWVDB_SOURCE_DIR, program, (folder_ / "set").string());
+            environment + fmt::format(
+                              "PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 "
+                              "'{}/docs/examples/datasets/{}' '{}' 2>&1",
+                              UWVDB_SOURCE_DIR, program, (folder_ / "set").string());
         FILE* const pipe = ::popen(command.c_str(), "r");
         std::string text;
         for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);

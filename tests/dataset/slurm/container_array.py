@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""examples/datasets/container_array.sh on a cluster of one node: three tasks in containers, of which one is
+"""docs/examples/datasets/container_array.sh on a cluster of one node: three tasks in containers, of which one is
 put back into the queue, make the same set, to the byte, as one container.
 
     container_array.py FOLDER COMMAND...
@@ -16,7 +16,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from array_job import expect, restarts, sums  # noqa: E402
 from cluster import Cluster  # noqa: E402
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[3] / "examples/datasets/container_array.sh"
+SCRIPT = pathlib.Path(__file__).resolve().parents[3] / "docs/examples/datasets/container_array.sh"
 SCENE = "/opt/uwvdb/share/uwvdb/scenes/wreck.yaml"
 OPTIONS = ["--frames", "20-25", "--size", "32x24", "--format", "png,depth,flow"]
 
