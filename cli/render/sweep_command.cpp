@@ -65,7 +65,7 @@ const char* const k_sweep_examples = R"(Examples:
       --set water.particles.large=0.1:1:0.3 --object seabed
 
 Renders the scene as a draft for each value from FIRST to LAST in steps of STEP, of a second --set
-for each pair, and measures it: signal, backscatter, contrast, evenness (docs/edit-numbers.md). Other
+for each pair, and measures it: signal, backscatter, contrast, evenness (docs/edit.md). Other
 values of --set are the same for all. Writes OUT.csv, a row for each picture and part of it, and
 OUT.svg, plots of contrast and signal to backscatter. Ctrl-C keeps what has been measured.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write,
@@ -362,7 +362,7 @@ PlotFigure sweep_figure(const Sweep& sweep, const SweepArguments& a) {
                              axis.key, axis.values.front(), axis.values.back());
     if (!along.empty()) figure.caption.push_back(along + ".");
     figure.caption.push_back(
-        fmt::format("Pictures of {} x {} pixels{}. Definitions: docs/edit-numbers.md.", sweep.width,
+        fmt::format("Pictures of {} x {} pixels{}. Definitions: docs/edit.md.", sweep.width,
                     sweep.height, sweep.is_complete ? "" : "; interrupted, not all of them"));
     return figure;
 }

@@ -90,7 +90,7 @@ class EditSession {
     EditSession(EditSession&&) = delete;
     EditSession& operator=(EditSession&&) = delete;
 
-    /// @name As docs/edit-api.md says
+    /// @name Requests (edit/server/edit_server.h)
     /// Requests that are rejected change nothing: InputError and UsageError of one line, IoError,
     /// and ConflictError for a request that another window, or another program, has outrun.
     /// @{

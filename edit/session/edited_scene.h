@@ -74,17 +74,37 @@ ImageScene lit_scene(const EditedScene& edited);
 void refuse_files_elsewhere(const EditedScene& before, const EditedScene& after);
 
 /// A scene while the changes of one request are made to it, one after the other: all of them or
-/// none.
+/// none. A request is
+///
+///     {"revision": 12, "label": "move left", "group": "drag-17", "changes": [{"op": ...}, ...]}
+///
+/// Successive requests of one group are one step of undo. It is in conflict if the same was changed
+/// in another group since `revision`, or if undo, redo or reload came between.
 class SceneChanges {
   public:
     SceneChanges(SceneText text, std::filesystem::path file,
                  std::shared_ptr<const EditedScene> scene, std::vector<std::string> off);
 
-    /// Makes these changes, each {"op": ...} as docs/edit-api.md says. Successive `set`s are read
-    /// together: a lamp cannot be given a kind and then its size. Throws InputError and UsageError
-    /// of one line, IoError; then this is of no further use. A text that is new to the scene and,
-    /// as a file's name, leads out of its folder is refused, whatever its key, before anything is
-    /// read.
+    /// Makes these changes. `lamp` is a lamp's name.
+    ///
+    ///     {"op": "set", "path", "value"}     path as for --set; null removes the key
+    ///     {"op": "add_lamp", "lamp", "like"} `lamp` as in a scene file; `like`: a lamp whose
+    ///                                        layout in the text is followed
+    ///     {"op": "remove_lamp", "lamp"}
+    ///     {"op": "duplicate_lamp", "lamp", "name"}   without `name` a free one is chosen
+    ///     {"op": "mirror_lamp", "lamp", "copy"}      left for right of the camera
+    ///     {"op": "rename_lamp", "lamp", "name"}
+    ///     {"op": "move_lamp", "lamp", ...}   `pixel` with `keep`: "distance" (from the camera's
+    ///                                        centre) or "z"; or `distance` [m] along its line of
+    ///                                        sight; or `world`, a point
+    ///     {"op": "aim_lamp", "lamp", ...}    `pixel`, where the handle of its axis is to be, or
+    ///                                        `world`, a point to shine at
+    ///     {"op": "lamp_on", "lamp", "on"}
+    ///
+    /// Successive `set`s are read together: a lamp cannot be given a kind and then its size. Throws
+    /// InputError and UsageError of one line, IoError; then this is of no further use. A text that
+    /// is new to the scene and, as a file's name, leads out of its folder is refused, whatever its
+    /// key, before anything is read.
     void apply(const Json& changes);
 
     const SceneText& text() const { return text_; }

@@ -15,8 +15,12 @@
 
 namespace uw {
 
-/// The steps in which a picture is refined. The first exists only for a scene that is rendered with
-/// all light, before any other picture of it: single scattering, which takes a tenth of the time.
+/// The steps in which a picture is refined: `small` has some 160 x 90 pixels, `draft` lies within
+/// 480 x 270, `full_draft` and `final` have the scene's size, at most 2.3 million pixels. A newer
+/// change ends them within 30 ms, except the small one; a change of brightness or name, or of which
+/// lamps are on, renders nothing. With all light there is no draft. The first exists only for a
+/// scene that is rendered with all light, before any other picture of it: single scattering, which
+/// takes a tenth of the time.
 enum class PictureQuality { first, small, draft, full_draft, final };
 inline constexpr std::size_t k_picture_qualities = 5;
 
@@ -47,7 +51,24 @@ struct Picture {
 /// How values are sent: as IEEE 754 halves, times a power of two for each plane, or singles.
 enum class SampleType { f16, f32 };
 
-/// The planes of a picture as bytes for the page, docs/edit-api.md.
+/// The planes of a picture as bytes for the page: 4 bytes, the length of the header, little endian;
+/// the header, JSON, padded with blanks such that the planes begin at a multiple of 16 bytes; the
+/// planes in the header's order, each height x width x channels values, little endian, to be
+/// multiplied by its `factor`:
+///
+///     {"key": 7,                          // grows; the same key, the same pixels
+///      "revision": 12, "width": 480, "height": 270,
+///      "scale": 2.0,                      // full width / this width
+///      "quality": "draft", "bands": 3, "lamps": ["left", "far"],
+///      "lamp_brightness": [[40, 40, 40], ...],   // with which they were rendered
+///      "planes": [{"lamp": "left", "layer": "direct", "channels": 3, "factor": 1}, ...],
+///      "type": "f16"}                     // or "f32"
+///
+/// Three channels are linear R G B; one is a value. Each lamp has `direct`, `backscatter`, `clean`,
+/// `irradiance` and, where the scene has them, `forward` and `multiple`; with "lamp": null come the
+/// same for surfaces that shine by themselves, and `depth` [m]. The planes of a lamp are to be
+/// multiplied, channel by channel, by the `rgb_scale` of the state over its `lamp_brightness`, and
+/// by 0 if it is off. The total is the sum of `direct`, `forward`, `backscatter` and `multiple`.
 std::string picture_bytes(const Picture& picture, SampleType type);
 
 /// Whether a picture of one scene is valid for the other: they differ at most in names and

@@ -66,8 +66,8 @@ Json lamp_place_json(const LampDesc& lamp) {
             {"direction", vector_json(lamp.direction)}};
 }
 
-// Reads a window's request to search a lamp's position (docs/edit-api.md). Throws UsageError where
-// the request is malformed, makes no sense, or names lamps that are not in `scene`.
+// Reads a window's request to search a lamp's position. Throws UsageError where the request is
+// malformed, makes no sense, or names lamps that are not in `scene`.
 SuggestRequest suggest_request(const Json& request, const ImageScene& scene) {
     SuggestRequest wanted;
     wanted.lamp = lamp_member(request, "lamp", scene);
@@ -88,7 +88,7 @@ SuggestRequest suggest_request(const Json& request, const ImageScene& scene) {
     return wanted;
 }
 
-// {"signal", "backscatter", ...}, as docs/edit-api.md says.
+// {"signal", "backscatter", ...}, as SessionMeasures::numbers says.
 Json numbers_json(const PictureNumbers& numbers) {
     const auto optional = [](const std::optional<double>& value) {
         return value ? number_json(*value) : Json(nullptr);

@@ -334,8 +334,8 @@ std::string_view frame_of(const SceneDesc& desc, const LampDesc& lamp, const Con
     return frame || desc.cameras.empty() ? "camera" : "rig";
 }
 
-/// One lamp of the state (docs/edit-api.md): what the file says of it, where it is in the world and
-/// in the image. `tree` is the scene file's.
+/// One lamp of the state: what the file says of it, where it is in the world and in the image.
+/// `tree` is the scene file's.
 Json lamp_json(const EditedScene& edited, std::size_t index, const ConfigNode& tree) {
     const SceneDesc& desc = edited.scene.desc();
     const LampDesc& lamp = desc.lamps[index];

@@ -138,8 +138,8 @@ struct Distribution {
     double mean = 0, percentile5 = 0, median = 0, percentile95 = 0;
 };
 
-/// The light of some pixels of an image, or of one lamp in it, by its origin; see
-/// docs/edit-numbers.md.
+/// The light of some pixels of an image, or of one lamp in it, by its origin
+/// (docs/edit.md).
 struct LightNumbers {
     std::size_t pixels = 0;
     Distribution direct, forward, backscatter;

@@ -1,6 +1,6 @@
 // ctest labels: metamorphic
 // A grid of constant value is the same water as particles given as a number, however the grid is
-// cut, scaled, turned or mirrored (physics section 8).
+// cut, scaled, turned or mirrored (physics section 1).
 #include <gtest/gtest.h>
 
 #include "tests/support/temp_dir.h"

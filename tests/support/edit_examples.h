@@ -56,8 +56,8 @@ inline std::shared_ptr<const EditedScene> edited_example(const std::string& name
     return scene;
 }
 
-/// The total that the page mixes of the bytes of the session's final picture (docs/edit-api.md),
-/// and the image that the renderer makes of the whole scene at once.
+/// The total that the page mixes of the bytes of the session's final picture
+/// (edit/session/picture.h), and the image that the renderer makes of the whole scene at once.
 inline TwoPictures both_pictures_of(const std::string& name, int width, int height) {
     const std::shared_ptr<const EditedScene> scene = edited_example(name, width, height);
     PictureRenderer renderer(quiet_callbacks());

@@ -15,7 +15,7 @@
 
 namespace uw::test {
 
-/// A picture's bytes, read as docs/edit-api.md says.
+/// A picture's bytes, read as edit/session/picture.h says.
 struct ReadPicture {
     Json header;
     std::vector<std::vector<float>> planes;

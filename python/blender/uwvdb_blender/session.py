@@ -1,5 +1,6 @@
 """One `uwvdb edit` that stays, and the pictures that it renders of a scene which is written anew again and
-again: docs/edit-api.md. Nothing here waits on Blender's main thread, and nothing here needs Blender."""
+again, by the interface of edit/server/edit_server.h. Nothing here waits on Blender's main thread, and
+nothing here needs Blender."""
 
 import atexit
 import contextlib
