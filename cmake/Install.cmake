@@ -52,9 +52,10 @@ if(UWVDB_MKDOCS AND UWVDB_DOXYGEN)
         COMMAND_ERROR_IS_FATAL ANY)" COMPONENT site EXCLUDE_FROM_ALL)
 endif()
 
-# The library: all modules but the command line's. Between minor versions, anything may change.
+# The library, without what only commands and Python use. Between minor versions, anything may change.
 get_property(uwvdb_library_modules GLOBAL PROPERTY UWVDB_MODULES)
 list(FILTER uwvdb_library_modules INCLUDE REGEX "^uwvdb_(core|media|camera|render)")
+list(FILTER uwvdb_library_modules EXCLUDE REGEX "^uwvdb_render_(run|validation)$")
 list(TRANSFORM uwvdb_library_modules REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>"
      OUTPUT_VARIABLE uwvdb_library_objects)
 uwvdb_public_headers(uwvdb_headers_to_install core media camera render)

@@ -4,7 +4,8 @@ endif()
 
 # uwvdb_public_headers(result FOLDER...): the headers below FOLDERs that a program can include with
 # no other library than GLM. Excluded are those that include another library's headers and those
-# that include an excluded one.
+# that include an excluded one, and those of the rooms of render that only the project's own
+# commands and Python use.
 #   cmake -D "PRINT=core;media" -P cmake/PublicHeaders.cmake
 # prints them, one a line.
 function(uwvdb_public_headers result)
@@ -14,6 +15,7 @@ function(uwvdb_public_headers result)
         set(at_each_build CONFIGURE_DEPENDS)
     endif()
     file(GLOB_RECURSE headers ${at_each_build} RELATIVE ${PROJECT_SOURCE_DIR} ${patterns})
+    list(FILTER headers EXCLUDE REGEX "^render/(run|validation)/")
     set(left_out "")
     foreach(header IN LISTS headers)
         file(STRINGS ${PROJECT_SOURCE_DIR}/${header} includes REGEX "^ *# *include ")
