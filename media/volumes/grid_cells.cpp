@@ -46,7 +46,7 @@ RootBlocks::RootBlocks(const Grid& grid) {
         std::vector<std::uint64_t> keys;
         for (const Entry& entry : entries_) keys.push_back(key_above(entry.key, level));
         std::ranges::sort(keys);
-        keys.erase(std::ranges::unique(keys).begin(), keys.end());
+        keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
         occupied_.push_back(std::move(keys));
     }
 }
