@@ -37,12 +37,9 @@ std::optional<Point3> ViewMatcher::moved(const SurfaceHit& hit) const {
 
 void ViewMatcher::match(std::span<const SurfaceHit* const> hits,
                         std::span<std::optional<PointMatch>> matches) const {
-    thread_local std::vector<Point3> from, to;
-    thread_local std::vector<PointMatch*> within;
-    thread_local std::vector<char> blocked;
-    from.clear();
-    to.clear();
-    within.clear();
+    std::vector<Point3> from, to;
+    std::vector<PointMatch*> within;
+    std::vector<char> blocked;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         matches[i].reset();
         const std::optional<Point3> point = moved(*hits[i]);

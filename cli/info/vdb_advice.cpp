@@ -28,6 +28,12 @@ namespace uw {
 
 namespace {
 
+/// Adds a line to the advice.
+template <class... Values>
+void say(VdbAdvice& advice, fmt::format_string<Values...> format, Values&&... values) {
+    advice.lines.push_back(fmt::format(format, std::forward<Values>(values)...));
+}
+
 bool contains_any(const std::string& text, std::initializer_list<const char*> parts) {
     return std::ranges::any_of(
         parts, [&](const char* part) { return text.find(part) != std::string::npos; });
@@ -130,12 +136,12 @@ void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
         advice.map = {chosen->summary.name};
         advice.level_sets = LevelSets::fog;
         advice.bounds = chosen->world_bounds;
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Map {} as fog: it is a level set (distances to a surface), and level_set: fog fills "
             "its inside with the value 1, which fades towards the surface within its narrow band. "
             "If it is the surface of a solid, export that as a mesh (.glb, .obj or .ply) and name "
             "it under geometry.",
-            list(advice.map)));
+            list(advice.map));
         return;
     }
     for (const GridInspection& grid : inspection.grids)
@@ -150,11 +156,10 @@ void say_what_to_map(const VdbInspection& inspection, VdbAdvice& advice) {
                                         : "no density in this file, and this is the closest to it: "
                                           "check that it is what you mean";
     if (advice.map.size() == 1)
-        advice.lines.push_back(fmt::format("Map {}: {}.", list(advice.map), why));
+        say(advice, "Map {}: {}.", list(advice.map), why);
     else
-        advice.lines.push_back(
-            fmt::format("{} grids are called '{}': address them as {}. Map those you mean.",
-                        advice.map.size(), chosen->summary.base_name, list(advice.map)));
+        say(advice, "{} grids are called '{}': address them as {}. Map those you mean.",
+            advice.map.size(), chosen->summary.base_name, list(advice.map));
 }
 
 /// Grids with valid values that are not concentrations.
@@ -166,8 +171,7 @@ void say_what_to_leave(const VdbInspection& inspection, VdbAdvice& advice) {
         if (concentration_likelihood(grid.summary.base_name) < 2)
             others.push_back(grid.summary.name);
     }
-    if (!others.empty())
-        advice.lines.push_back(fmt::format("Not a concentration by name: {}.", list(others)));
+    if (!others.empty()) say(advice, "Not a concentration by name: {}.", list(others));
 }
 
 void say_what_is_wrong(const GridInspection& grid, VdbAdvice& advice) {
@@ -227,18 +231,6 @@ bool lacks(const VdbInspection& inspection, const std::string& part) {
     });
 }
 
-/// Whether the grid leaves at most a margin of its domain free on every side but above and below,
-/// as frames of an adaptive domain do.
-bool fills_its_domain(const GridInspection& grid) {
-    constexpr int k_margin = 8;  // Blender's own is 4 voxels, and what a step moves
-    const auto& domain = grid.summary.base_resolution;
-    if (!domain || !grid.box) return false;
-    for (const std::size_t axis : {0U, 1U})
-        if (grid.box->min[axis] > k_margin || (*domain)[axis] - 1 - grid.box->max[axis] > k_margin)
-            return false;
-    return true;
-}
-
 std::string sides_text(const Vector3& sides) {
     return fmt::format("{:.4g} x {:.4g} x {:.4g} m", sides.x, sides.y, sides.z);
 }
@@ -263,23 +255,18 @@ void say_domain(const VdbInspection& inspection, VdbAdvice& advice) {
         constexpr double k_rounding = 1e-5;
         const Vector3& h = *domain->voxel;
         if (glm::length(h - edge) > k_rounding * edge)
-            advice.lines.push_back(fmt::format(
+            say(advice,
                 "The file states voxels of {:.4g} m, which Blender stretches to fill the domain's "
                 "box: {} is taken from the cache's folder config.",
-                edge, sides_text(h)));
+                edge, sides_text(h));
         return;
     }
-    if (fills_its_domain(*mapped) && !read_fluid_config(inspection.header.file))
-        advice.lines.emplace_back(
-            "It fills its domain. If 'Adaptive Domain' (Physics > Fluid > Settings) was on in "
-            "Blender, the file's voxels are too large: give voxel_size, the domain's longest "
-            "side divided by its Resolution Divisions.");
-    advice.lines.push_back(fmt::format(
+    say(advice,
         "Blender stretches voxels to fill the domain, which the file does not hold: unless its "
         "Dimensions are {} (Blender's x, y, z), keep the cache's folder config beside data, or "
         "give transform.scale: [X/{:.6g}, Z/{:.6g}, Y/{:.6g}] of Dimensions X, Y and Z.",
         sides_text(edge * Vector3(count[0], count[1], count[2])), edge * count[0], edge * count[2],
-        edge * count[1]));
+        edge * count[1]);
 }
 
 /// The position of the domain in Blender, in the scene's axes; empty if it is not known.
@@ -299,25 +286,25 @@ void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
             ? ""
             : fmt::format(" But --up says that it is {}.", name_of_up(inspection.placement.up));
     if (header.from_blender_fluid()) {
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Up is z, values sit in the middle of cells: a cache of Blender's fluid solver, "
             "recognised by its grids. Index (0, 0, 0) is the domain's corner{}.{}",
             place_in_blender(inspection)
                 ? ""
                 : "; the file does not record where that is: translate it there, (x, y, z) in "
                   "Blender is [x, z, -y] here",
-            up));
+            up);
         say_domain(inspection, advice);
         return;
     }
     if (header.from_embergen()) {
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Up is z, values sit at nodes (index i at i times the voxel): written by EmberGen, "
             "recognised by its metadata or its grid 'flames'.{}{}",
             lacks(inspection, "density")
                 ? " It has no density: tick that channel in the export node, if the smoke is meant."
                 : "",
-            up));
+            up);
         return;
     }
     const bool houdini = header.from_houdini();
@@ -326,11 +313,10 @@ void say_axes(const VdbInspection& inspection, VdbAdvice& advice) {
         : up.empty() ? " If it lies on its side, ask again with --up z, or write up: z; if half a "
                        "voxel off, centering: cell."
                      : " If half a voxel off, write centering: cell.";
-    advice.lines.push_back(fmt::format(
-        "Up is y, values sit at nodes (index i at i times the voxel): {}.{}{}",
+    say(advice, "Up is y, values sit at nodes (index i at i times the voxel): {}.{}{}",
         houdini ? fmt::format("written by Houdini, as its creator '{}' says", header.creator)
                 : "nothing in the file says otherwise",
-        up, hint));
+        up, hint);
 }
 
 /// The placement of a volume by the file's transform and the advice.
@@ -392,29 +378,29 @@ void say_place(const VdbInspection& inspection, bool has_size, VdbAdvice& advice
             advice.translate[axis] = rounded(advice.scale * place->offset()[axis], k_metres) + 0.0;
         }
         const Vector3& t = place->offset();
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Its domain had its corner at ({:.4g}, {:.4g}, {:.4g}) in Blender{}{}, as the cache's "
             "folder config says: the block puts it there, beside what the same scene exports as "
             ".glb.",
             t.x, -t.z, t.y, advice.rotate == Vector3(0) ? "" : " and was turned",
-            turn.mirror == Vector3(1) ? "" : " and mirrored"));
+            turn.mirror == Vector3(1) ? "" : " and mirrored");
         if (turn.is_sheared)
-            advice.lines.emplace_back(
+            say(advice,
                 "A parent that is scaled shears it in Blender, which no transform here does: the "
                 "block has the nearest rotation. Apply the parent's scale, and bake again.");
     } else if (!has_size && advice.bounds.min.y < 0) {
         const double step = std::pow(10, std::floor(std::log10(side)) - 3);
         advice.translate.y = std::ceil(-advice.scale * advice.bounds.min.y / step) * step;
-        advice.lines.emplace_back(
+        say(advice,
             "Without a size its place means nothing, either: the block puts it onto y = 0.");
     }
     const Vector3 centre = from_origin(placing(advice) * advice.bounds.center());
     if (!(glm::length(centre) > k_far_off) || !std::isfinite(glm::length(centre))) return;
     advice.translate -= glm::round(centre);
-    advice.lines.push_back(fmt::format(
+    say(advice,
         "It lies {:.3g} m from the origin, as if in the coordinates of a map: the block brings it "
         "to the origin; give cameras, lamps and surfaces the same translation.",
-        glm::length(centre)));
+        glm::length(centre));
 }
 
 std::string size_of(const VdbAdvice& advice) {
@@ -436,26 +422,25 @@ bool say_size(const VdbInspection& inspection, VdbAdvice& advice) {
     };
     if (unit_voxels) {
         advice.scale = fitting;
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Units look wrong: a voxel is exactly 1 m, as if no size was set, and the whole {}. "
             "Give its true size with transform.scale; {:g} makes it {:.3g} m.",
-            size_of(advice), fitting, fitting * side));
+            size_of(advice), fitting, fitting * side);
     } else if (side > k_too_large) {
         advice.scale = plausible(0.01) ? 0.01 : fitting;
-        advice.lines.push_back(
-            fmt::format("Units look wrong: {} is more than lamps can light under water; {}"
-                        "transform.scale: {:g} makes it {:.3g} m.",
-                        size_of(advice), plausible(0.01) ? "if these are centimetres, " : "",
-                        advice.scale, advice.scale * side));
+        say(advice,
+            "Units look wrong: {} is more than lamps can light under water; {}"
+            "transform.scale: {:g} makes it {:.3g} m.",
+            size_of(advice), plausible(0.01) ? "if these are centimetres, " : "", advice.scale,
+            advice.scale * side);
     } else if (side < k_too_small) {
         advice.scale = plausible(100) ? 100 : fitting;
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Units look wrong: {} is very small; {}transform.scale: {:g} makes it {:.3g} m.",
             size_of(advice), plausible(100) ? "if it was scaled by 1/100 on export, " : "",
-            advice.scale, advice.scale * side));
+            advice.scale, advice.scale * side);
     } else {
-        advice.lines.push_back(
-            fmt::format("Units are plausible: {} along its longest side.", size_of(advice)));
+        say(advice, "Units are plausible: {} along its longest side.", size_of(advice));
     }
     return !unit_voxels;
 }
@@ -478,14 +463,14 @@ void say_motion(const VdbInspection& inspection, VdbAdvice& advice) {
     if (grid.empty() && has("vel.x") && has("vel.y") && has("vel.z"))
         grid = "[vel.x, vel.y, vel.z]";
     if (grid.empty()) return;
-    advice.lines.push_back(
-        fmt::format("It moves: for motion blur add velocity: {{grid: {}}} to the volume, and the "
-                    "exposure time in "
-                    "seconds as render: {{shutter: 0.02}}.{}",
-                    grid,
-                    inspection.header.from_blender_fluid()
-                        ? " Its unit is 2.5 voxels a second, as in Blender's solver."
-                        : " Its unit is taken to be m/s."));
+    say(advice,
+        "It moves: for motion blur add velocity: {{grid: {}}} to the volume, and the "
+        "exposure time in "
+        "seconds as render: {{shutter: 0.02}}.{}",
+        grid,
+        inspection.header.from_blender_fluid()
+            ? " Its unit is 2.5 voxels a second, as in Blender's solver."
+            : " Its unit is taken to be m/s.");
 }
 
 /// Decides `fps`.
@@ -493,11 +478,11 @@ void say_frame_rate(const VdbInspection& inspection, VdbAdvice& advice) {
     const std::optional<double> rate = fluid_frame_rate(inspection.header.file);
     if (!rate || *rate == RenderDesc().fps) return;
     advice.fps = rate;
-    advice.lines.push_back(
-        fmt::format("It was baked at {:.4g} frames a second (with Time Scale 1), as the cache's "
-                    "folder config says, and scenes without render.fps have {:g}: the scene that "
-                    "--scene prints has that key.",
-                    *rate, RenderDesc().fps));
+    say(advice,
+        "It was baked at {:.4g} frames a second (with Time Scale 1), as the cache's "
+        "folder config says, and scenes without render.fps have {:g}: the scene that "
+        "--scene prints has that key.",
+        *rate, RenderDesc().fps);
 }
 
 }  // namespace
@@ -722,7 +707,7 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
     advice.small_ppm = small_ppm;
     advice.large_ppm = k_large_per_small * small_ppm;
     const double contrast = advice.view.draft.contrast;
-    advice.lines.push_back(fmt::format(
+    say(advice,
         "small: {:g} and large: {:g} ppm per unit give an optical depth of about {:.2g} at {:g} nm "
         "through the densest part, and a contrast of {:.0f} % where it is clearest (median over "
         "its pixels {:.2g} %) in a picture of the scene that --scene prints (in {}{}): {}. Your "
@@ -733,12 +718,12 @@ void choose_concentrations(const VdbInspection& inspection, const Bounds& others
         advice.view.proposal.water, advice.view.needs_all_light() ? ", in all light" : "",
         contrast >= k_plain_to_see ? "neither invisible nor black"
                                    : "it will hardly be seen; a smaller transform.scale brings "
-                                     "camera and lamps nearer"));
+                                     "camera and lamps nearer");
     if (advice.view.needs_all_light())
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Single scattering leaves out about {:.0f} % of that scene's light: it asks for all of "
             "it, with render.scattering: multiple.",
-            100 * advice.view.left_out->fraction));
+            100 * advice.view.left_out->fraction);
 }
 
 namespace {
@@ -841,19 +826,19 @@ void say_unit(const VdbInspection& inspection, VdbAdvice& advice) {
     const double largest = max_value(inspection, advice);
     const std::string& name = advice.map.front();
     if (largest > k_max_usual)
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Its values reach {:.3g}, more than a million ppm: they may be numbers of particles, "
             "whose volume depends on their size. For a grid of particles per m3 write, in place of "
             "small and large, {}: {{silt: 1 /m3}} (per ml or cm3 1e6 /m3), with water: {{species: "
             "{{silt: {{library: silt}}}}}} or another species; a particle of diameter d has pi/6 "
             "d^3, at 10 um 5.2e-10 ppm per particle and m3.",
-            largest, quoted_name(name)));
+            largest, quoted_name(name));
     else if (largest < k_min_usual)
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Its values reach {:.3g} only: they may be fractions by volume, of which 1 is 1e6 ppm "
             "(write {}: {{small: 1e6, large: 0}}), or masses in kg/m3, with a species {{silt: 1000 "
             "g/m3}}. What the block below gives is as much as makes it plain to see.",
-            largest, quoted_name(name)));
+            largest, quoted_name(name));
 }
 
 /// A scene's sea floor is often at y = 0, and hides what is below.
@@ -862,12 +847,12 @@ void say_what_is_below(VdbAdvice& advice) {
     constexpr double k_rounding = 1e-3;  // of its size
     if (!(lowest < -k_rounding * side)) return;
     const Vector3& t = advice.translate;
-    advice.lines.push_back(fmt::format(
+    say(advice,
         "Its lowest point lies at y = {} m, below y = 0: the floor of the scene that --scene "
         "prints "
         "is lower still, but one at y = 0 would hide it; transform.translate: [{:.15g}, {}, "
         "{:.15g}] puts it onto that.",
-        length_text(lowest, side), t.x, length_text(t.y - lowest, side), t.z));
+        length_text(lowest, side), t.x, length_text(t.y - lowest, side), t.z);
 }
 
 VdbAdvice advise(const VdbInspection& inspection, const FrameSurvey& frames,
@@ -904,20 +889,20 @@ void say_range(const FrameSurvey& frames, VdbAdvice& advice) {
     const auto frame_of = [&](const auto& it) {
         return frames.sampled[static_cast<std::size_t>(it - largest.begin())].frame;
     };
-    advice.lines.push_back(
-        fmt::format("Over the sequence ({} frames sampled) the largest value lies between {:.4g} "
-                    "(frame {}) and {:.4g} (frame {}); concentrations, bounds and camera suit all "
-                    "of them.",
-                    largest.size(), *least, frame_of(least), *most, frame_of(most)));
+    say(advice,
+        "Over the sequence ({} frames sampled) the largest value lies between {:.4g} "
+        "(frame {}) and {:.4g} (frame {}); concentrations, bounds and camera suit all "
+        "of them.",
+        largest.size(), *least, frame_of(least), *most, frame_of(most));
     constexpr double k_flicker = 2;
     for (std::size_t n = 1; n < largest.size(); ++n) {
         const double ratio = largest[n] / largest[n - 1];
         if (ratio < k_flicker && ratio > 1 / k_flicker) continue;
-        advice.lines.push_back(fmt::format(
+        say(advice,
             "Its range changes by a factor of {:.2g} from frame {} to frame {}: if that is no "
             "eruption, the frames were normalised one by one and the plume will flicker; export "
             "them with one range.",
-            ratio, frames.sampled[n - 1].frame, frames.sampled[n].frame));
+            ratio, frames.sampled[n - 1].frame, frames.sampled[n].frame);
     }
 }
 

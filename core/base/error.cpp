@@ -6,6 +6,7 @@ namespace uw {
 
 namespace {
 
+// Of the thread, since TBB and the callbacks of other libraries pass no argument on to what asks.
 thread_local const std::atomic<bool>* stop_of_thread = nullptr;
 
 }  // namespace

@@ -154,8 +154,8 @@ void Texture::texels_of_file(const Level& level, int x, int y, int columns, int 
     const int x1 = std::min(x0 + columns * step, file_->width);
     const int y1 = std::min(y0 + rows * step, file_->height);
     const auto channels = static_cast<std::size_t>(file_->channels);
-    thread_local std::vector<float> values;
-    values.resize(channels * static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0));
+    std::vector<float> values(channels * static_cast<std::size_t>(x1 - x0) *
+                              static_cast<std::size_t>(y1 - y0));
     if (!file_->read(x0, y0, x1, y1, values.data())) fail_to_read();
     std::ranges::fill(texels, Rgb{});
     const float* at = values.data();

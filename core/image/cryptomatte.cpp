@@ -96,8 +96,7 @@ void store_mattes(std::vector<Matte>& mattes, std::span<float> channels) {
 }
 
 void mix_mattes(std::span<const float> more, double weight, std::span<float> mean) {
-    thread_local std::vector<Matte> mattes;
-    mattes.clear();
+    std::vector<Matte> mattes;
     const auto share_in = [](std::span<const float> list, float id) {
         for (std::size_t i = 0; i < list.size(); i += 2)
             if (list[i] == id) return static_cast<double>(list[i + 1]);

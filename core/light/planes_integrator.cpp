@@ -71,7 +71,7 @@ void PlanesIntegrator::in_scatter(const Ray& ray, std::span<const double> distan
 
 void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
                                        std::span<const double> distances, InScatter& result) const {
-    thread_local Workspace w;
+    Workspace w;
     const std::vector<Lamp>& emitters = *scene_.emitters;
     result.reset(distances.size(), scene_.lamp_count());
     place_samples(ray, begin, distances, w.samples);
@@ -178,8 +178,8 @@ FocusWeightedIntegrator::FocusWeightedIntegrator(std::unique_ptr<const Integrato
 
 void FocusWeightedIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                          InScatter& result) const {
-    thread_local std::vector<double> stops;
-    thread_local InScatter unweighted;
+    std::vector<double> stops;
+    InScatter unweighted;
     find_stops(0, distances, stops);
     integrator_->in_scatter(ray, stops, unweighted);
     weigh(0, stops, unweighted, distances, result);
@@ -188,8 +188,8 @@ void FocusWeightedIntegrator::in_scatter(const Ray& ray, std::span<const double>
 void FocusWeightedIntegrator::in_scatter_from(const Ray& ray, double begin,
                                               std::span<const double> distances,
                                               InScatter& result) const {
-    thread_local std::vector<double> stops;
-    thread_local InScatter unweighted;
+    std::vector<double> stops;
+    InScatter unweighted;
     find_stops(begin, distances, stops);
     integrator_->in_scatter_from(ray, begin, stops, unweighted);
     weigh(begin, stops, unweighted, distances, result);

@@ -194,8 +194,7 @@ void SubmergedField::column(const Point3& a, const Point3& b, std::span<double> 
     }
     const Point3 middle = surface_.between(a, b);
     below_->column(a_above ? surface_.mirrored(a) : a, middle, column);
-    thread_local std::vector<double> rest;
-    rest.resize(column.size());
+    std::vector<double> rest(column.size());
     below_->column(middle, b_above ? surface_.mirrored(b) : b, rest);
     for (std::size_t k = 0; k < column.size(); ++k) column[k] += rest[k];
 }
@@ -214,7 +213,7 @@ void SubmergedField::unfold(const Ray& ray, double s_end, ConcentrationProfile& 
         return;
     }
     below(image, *crossing, profile);
-    thread_local ConcentrationProfile rest;
+    ConcentrationProfile rest;
     below({ray.at(*crossing), ray.direction}, s_end - *crossing, rest);
     // Both have a knot at the surface, with the same concentrations.
     const auto count = static_cast<std::ptrdiff_t>(profile.constituent_count);

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <stdexcept>
-#include <vector>
 
 #include "core/base/vector_math.h"
-#include "core/image/spectral_bands.h"
 
 namespace uw {
 
@@ -40,7 +36,6 @@ SunPosition sun_position(double unix_time, double latitude, double longitude) {
     const double t = days / 36525;                                // [Julian centuries]
     const double mean_longitude = 280.46646 + t * (36000.76983 + t * 0.0003032);
     const double anomaly = 357.52911 + t * (35999.05029 - t * 0.0001537);
-    const double eccentricity = 0.016708634 - t * (0.000042037 + t * 0.0000001267);
     const double centre = (1.914602 - t * (0.004817 + t * 0.000014)) * sine_of_degrees(anomaly) +
                           (0.019993 - t * 0.000101) * sine_of_degrees(2 * anomaly) +
                           0.000289 * sine_of_degrees(3 * anomaly);
@@ -68,35 +63,7 @@ SunPosition sun_position(double unix_time, double latitude, double longitude) {
     SunPosition position;
     position.azimuth = in_one_turn(std::atan2(east, north) / k_degree);
     position.elevation = std::atan2(up, std::hypot(east, north)) / k_degree;
-    position.distance = 1.000001018 * (1 - eccentricity * eccentricity) /
-                        (1 + eccentricity * cosine_of_degrees(anomaly + centre));
     return position;
-}
-
-double air_mass(double apparent_elevation) {
-    return 1 / (sine_of_degrees(apparent_elevation) +
-                0.50572 * std::pow(apparent_elevation + 6.07995, -1.6364));
-}
-
-Spectrum direct_sun_irradiance(double apparent_elevation, double turbidity, double distance,
-                               std::span<const double> bands_nm) {
-    if (bands_nm.size() < 2)
-        throw std::invalid_argument("the sun's spectrum needs two bands or more");
-    if (apparent_elevation < 0) return {};
-    LampSpectrumDesc blackbody;
-    blackbody.type = LampSpectrumDesc::Type::blackbody;
-    blackbody.temperature = k_solar_temperature;
-    const PerBand above =
-        band_values(make_lamp_spectrum(blackbody), k_solar_irradiance / (distance * distance),
-                    band_intervals(bands_nm));
-    const double mass = air_mass(apparent_elevation);
-    const double aerosol = std::max(0.0, 0.04608 * turbidity - 0.04586);
-    return per_band(bands_nm.size(), [&](std::size_t band) {
-        const double micrometres = bands_nm[band] / 1000;
-        const double depth =
-            0.008735 * std::pow(micrometres, -4.08) + aerosol * std::pow(micrometres, -1.3);
-        return above[band] * std::exp(-depth * mass);
-    });
 }
 
 }  // namespace uw

@@ -272,7 +272,7 @@ struct Facing {
     /// Traces the rays with this number (shadow_origin). `all`: as for find().
     void trace_shadows(const Lamp& part, std::span<const SurfaceSample* const> all,
                        std::size_t number, const Surfaces& surfaces) {
-        thread_local std::vector<Point3> origins;
+        std::vector<Point3> origins;
         for (std::size_t n = 0; n < positions.size(); n += k_rays_at_once) {
             throw_if_stopped();
             const std::size_t count = std::min(k_rays_at_once, positions.size() - n);
@@ -294,9 +294,7 @@ class HalfShades {
 
     /// Finds the visibility of the emitters from `first` up to `last`, which form one lamp.
     void find(std::size_t first, std::size_t last) {
-        thread_local std::vector<char> lit, dark;
-        lit.assign(samples_.size(), 0);
-        dark.assign(samples_.size(), 0);
+        std::vector<char> lit(samples_.size(), 0), dark(samples_.size(), 0);
         trace(first, last, 0, {}, [&](std::size_t sample, double& visibility, bool is_hidden) {
             (is_hidden ? dark : lit)[sample] = 1;
             visibility = is_hidden ? 0 : 1;
@@ -327,7 +325,7 @@ class HalfShades {
     template <class Take>
     void trace(std::size_t first, std::size_t last, int round, std::span<const char> wanted,
                const Take& take) {
-        thread_local Facing facing;
+        Facing facing;
         const std::vector<Lamp>& emitters = *scene_.emitters;
         for (std::size_t j = first; j < last; ++j) {
             facing.find(emitters[j], samples_, wanted);
@@ -371,10 +369,9 @@ DirectLighting::DirectLighting(const LitScene& scene,
 void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
                               SurfaceLight& light) const {
     const auto bands = static_cast<std::size_t>(attenuation_.band_count);
-    thread_local std::vector<double> column;
-    thread_local Facing facing;
-    thread_local SurfaceColumns columns;
-    column.resize(attenuation_.constituents.size());
+    std::vector<double> column(attenuation_.constituents.size());
+    Facing facing;
+    SurfaceColumns columns;
     light.reset(samples.size(), *scene_.emitters, bands);
     // Compute optical depths first; all are converted to transmittances at once.
     const auto set_depths = [&](std::size_t sample, double length, std::span<double> depths) {

@@ -19,6 +19,15 @@ void ScatterNodes::clear() {
     position.clear();
 }
 
+void ScatterNodes::reserve(std::size_t count) {
+    s.reserve(count);
+    weight.reserve(count);
+    radius.reserve(count);
+    half_tangent.reserve(count);
+    distance.reserve(count);
+    position.reserve(count);
+}
+
 void ScatterNodes::look_up(const ConcentrationProfile& profile) {
     const auto constituents = static_cast<std::size_t>(profile.constituent_count);
     concentration.resize(size() * constituents);
@@ -56,7 +65,7 @@ ScatterSum::ScatterSum(const Medium& medium)
 
 UWVDB_VECTOR_CLONES void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
                                          std::span<Spectrum> radiance) const {
-    thread_local std::vector<double> tau, beta;
+    std::vector<double> tau(nodes.size()), beta(nodes.size());
     // Band by band, so that each loop runs over contiguous nodes without a branch.
     for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation_.band_count); ++b) {
         tau.assign(nodes.size(), 0.0);
@@ -103,6 +112,8 @@ namespace {
 // Greatest change in the optical depth of the whole light path across a Gauss panel: three nodes
 // integrate e^-x over [0, 1.5] to 1e-5.
 constexpr double k_panel_optical_depth = 1.5;
+// The nodes of most rays: they are allocated once, not as they grow.
+constexpr std::size_t k_usual_nodes = 256;
 // Light whose path exceeds the least optical depth by this much adds less than 1e-6 of the total.
 constexpr double k_negligible_optical_depth = 15;
 
@@ -268,7 +279,8 @@ void VolumeIntegrator::in_scatter(const Ray& ray, std::span<const double> distan
 
 void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
                                        std::span<const double> distances, InScatter& result) const {
-    thread_local Workspace w;
+    Workspace w;
+    w.nodes.reserve(k_usual_nodes);
     const std::vector<Lamp>& emitters = *scene_.emitters;
     result.reset(distances.size(), scene_.lamp_count());
     scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);
@@ -293,10 +305,10 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
 
 void VolumeIntegrator::visit_nodes(const Ray& ray, std::span<const double> distances,
                                    const std::function<void(const Node&)>& visit) const {
-    thread_local Workspace w;
-    thread_local std::vector<Spectrum> radiance;
-    thread_local std::vector<std::size_t> distance_of_node;
-    thread_local std::vector<double> columns, concentration;
+    Workspace w;
+    std::vector<Spectrum> radiance;
+    std::vector<std::size_t> distance_of_node;
+    std::vector<double> columns, concentration;
     const std::vector<Lamp>& emitters = *scene_.emitters;
     scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);
     const auto constituents = static_cast<std::size_t>(w.profile.constituent_count);

@@ -29,6 +29,8 @@ struct ScatterNodes {
 
     std::size_t size() const { return s.size(); }
     void clear();
+    /// Makes room for this many nodes.
+    void reserve(std::size_t count);
     /// Fills column and concentration from the ray's profile and lamp_column.
     void look_up(const ConcentrationProfile& profile);
     /// Fills phase from half_tangent; `phases` is the number of phase functions in the table.

@@ -91,8 +91,8 @@ std::vector<float> quadrature_derivatives(const PixelRenderer& pixels,
                                           const ChangedScenes& scenes, const PixelWindow& window,
                                           const ProgressCallback& progress) {
     return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
-        thread_local PixelView view;
-        thread_local SurfaceLight light;
+        PixelView view;
+        SurfaceLight light;
         pixels.trace(x, y, view);
         pixels.light_surfaces(std::span(&view, 1), light);
         add_quadrature_terms(pixels, water, view, light, sum);
@@ -106,7 +106,7 @@ std::vector<float> path_derivatives(const PixelRenderer& pixels, const ChangedSc
     PathPixels paths(pixels, 0);
     paths.allocate_paths(draws.samples);
     return images_of(scenes, window, progress, [&](int x, int y, ScoreSum& sum) {
-        thread_local PixelResult result;
+        PixelResult result;
         paths.render(
             x, y, round_of(draws), [](int) {}, result, &sum);
         return result.pixel_factor / draws.samples;
@@ -240,8 +240,8 @@ void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& wa
                          const PixelWeights& weights, const std::optional<Draws>& draws,
                          std::span<const PartGradients> parts, const ProgressCallback& progress) {
     gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& sink) {
-        thread_local PixelView view;
-        thread_local SurfaceLight light;
+        PixelView view;
+        SurfaceLight light;
         pixels.trace(x, y, view);
         pixels.light_surfaces(std::span(&view, 1), light);
         if (draws) sink.thin(x, y, draws->seed);
@@ -256,8 +256,8 @@ void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, con
     PathPixels paths(pixels, 0);
     paths.allocate_paths(draws.samples);
     gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& sink) {
-        thread_local PixelResult result;
-        thread_local PixelView view;
+        PixelResult result;
+        PixelView view;
         pixels.trace(x, y, view);
         sink.begin(weights.at(x, y), pixels.pixel_factor(view) / draws.samples);
         paths.render(

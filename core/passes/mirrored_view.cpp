@@ -40,8 +40,7 @@ bool MirroredView::add_arriving(double x, double y, Spectrum& sum) const {
     const std::optional<Ray> ray = rays_.refracted_ray(x, y);
     const std::optional<WaterSurface::Meeting> meets = ray ? meeting(*ray) : std::nullopt;
     if (!meets) return false;
-    thread_local std::vector<double> columns;
-    columns.resize(attenuation_.constituents.size());
+    std::vector<double> columns(attenuation_.constituents.size());
     scene_.field->column(ray->origin, ray->at(meets->distance), columns);
     Spectrum arriving = attenuation_.transmittance(meets->distance, columns);
     arriving *=

@@ -353,9 +353,9 @@ void MultipleScattering::add_to_lamp(std::size_t group, std::size_t band, double
 
 void MultipleScattering::add_water(const PixelView& view, std::span<double> light,
                                    Errors& errors) const {
-    thread_local std::vector<Corner> corners;
-    thread_local std::vector<float> weights;
-    thread_local std::vector<double> halo;
+    std::vector<Corner> corners;
+    std::vector<float> weights;
+    std::vector<double> halo;
     Spectrum scattered{};  // of uniform light, by the water up to each distance
     weight_lattice_.find(view.x, view.y, weights);
     find_corners(view.x, view.y, corners);
@@ -409,9 +409,8 @@ void MultipleScattering::add_water(const PixelView& view, std::span<double> ligh
 // clamp it.
 void MultipleScattering::add_volume(const PixelView& view, PixelResult& result,
                                     Errors& errors) const {
-    thread_local std::vector<double> light;
     const std::size_t groups = estimator_.groups();
-    light.assign(groups * bands_, 0.0);
+    std::vector<double> light(groups * bands_, 0.0);
     add_water(view, light, errors);
     for (std::size_t group = 0; group < groups; ++group) {
         for (std::size_t b = 0; b < bands_; ++b) {
@@ -462,8 +461,8 @@ void MultipleScattering::find_matches(double x, double y, const SurfaceHit& hit,
 
 void MultipleScattering::add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
                                      PixelResult& result, Errors& errors) const {
-    thread_local std::vector<Corner> matches;
-    thread_local SmoothNode own;
+    std::vector<Corner> matches;
+    SmoothNode own;
     find_matches(sample.x, sample.y, sample.hit, matches);
     if (matches.empty()) {
         // The surface is too small for the lattice: trace paths for this sample.
@@ -473,7 +472,7 @@ void MultipleScattering::add_surface(const SurfaceSample& sample, std::span<cons
     double total = 0;
     for (const Corner& match : matches) total += match.weight;
     const SurfaceReflection reflection(*pixels_.scene().surfaces, sample, static_cast<int>(bands_));
-    thread_local std::vector<double> mirrored, squares;
+    std::vector<double> mirrored, squares;
     const int mirrored_paths = std::max(1, k_mirrored_paths / pixels_.samples());
     if (reflection.is_glossy())
         estimator_.estimate_mirrored(sample, mirrored_paths, mirrored, squares);

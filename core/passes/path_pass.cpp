@@ -54,18 +54,18 @@ struct Kind {
     double PathCounts::*count;
     Stream stream;
     Spectrum PixelResult::*part;
-    double (*trace)(const PathTracer&, const CameraSegment&, PathRandom&, ContributionSink&);
+    double (*trace)(const PathTracer&, CameraSegment&, PathRandom&, ContributionSink&);
 };
 
 constexpr std::array k_kinds{
     Kind{&PathCounts::water, k_water, &PixelResult::multiple_volume,
-         [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
+         [](const PathTracer& paths, CameraSegment& segment, PathRandom& random,
             ContributionSink& sink) { return paths.trace_water(segment, random, sink); }},
     Kind{&PathCounts::lit, k_lit, &PixelResult::multiple_volume,
-         [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
+         [](const PathTracer& paths, CameraSegment& segment, PathRandom& random,
             ContributionSink& sink) { return paths.trace_lit_surfaces(segment, random, sink); }},
     Kind{&PathCounts::surface, k_surface, &PixelResult::multiple_surface,
-         [](const PathTracer& paths, const CameraSegment& segment, PathRandom& random,
+         [](const PathTracer& paths, CameraSegment& segment, PathRandom& random,
             ContributionSink& sink) { return paths.trace_surface(segment, random, sink); }}};
 
 }  // namespace
@@ -81,6 +81,22 @@ struct PathPixels::Batch {
         if (stream != k_position) numbers.skip_to(k_position_dimensions);
         return numbers;
     }
+};
+
+/// Memory in which one pixel is rendered.
+struct PathPixels::Scratch {
+    PixelView view;
+    // Of the rays that are traced at once:
+    std::vector<Ray> rays;
+    std::vector<int> indices;  // of the rays' paths
+    std::vector<SurfaceHit> hits;
+    std::vector<char> found;
+    std::vector<SurfaceSample> samples;
+    std::vector<const SurfaceSample*> surfaces;
+    SurfaceLight light;
+    // Of one of them:
+    std::vector<SeenLamp> lamps;
+    CameraSegment segment;
 };
 
 /// Adds contributions to the pixel and to the sum of the current batch.
@@ -137,7 +153,8 @@ class PathPixels::Sum final : public ContributionSink {
 
 void PathPixels::render(int x, int y, const PathRound& round, const TracedCallback& traced,
                         PixelResult& result, ContributionSink* observer) const {
-    thread_local PixelView view;
+    Scratch scratch;
+    PixelView& view = scratch.view;
     render_without_paths(x, y, round, view, result);
     const auto bands = static_cast<std::size_t>(pixels_.band_count());
     const bool has_ray = view.ray.has_value();
@@ -153,7 +170,7 @@ void PathPixels::render(int x, int y, const PathRound& round, const TracedCallba
         const auto number = (static_cast<std::uint64_t>(pixels_.first_sample()) << k_part_shift) +
                             static_cast<std::uint64_t>(round.number) * PathRound::k_batches + i;
         sum.begin_batch();
-        trace(x, y, {pixel, number, sizes[i]}, view, sum, traced);
+        trace(x, y, {pixel, number, sizes[i]}, scratch, sum, traced);
         means[i] = sum.batch() / sizes[i];
     }
     const double weight = 1.0 / round.samples;
@@ -182,11 +199,10 @@ void PathPixels::render(int x, int y, const PathRound& round, const TracedCallba
 /// Renders everything but the light that paths estimate, which is set to 0.
 void PathPixels::render_without_paths(int x, int y, const PathRound& round, PixelView& view,
                                       PixelResult& result) const {
-    thread_local SurfaceLight light;
-    thread_local std::vector<double> no_in_scatter;
     pixels_.trace(x, y, view);
     if (round.number == 0) {
-        no_in_scatter.assign(pixels_.in_scatter().value_count(), 0.0);
+        SurfaceLight light;
+        const std::vector<double> no_in_scatter(pixels_.in_scatter().value_count(), 0.0);
         pixels_.light_surfaces(std::span(&view, 1), light);
         pixels_.shade(view, light, 0, no_in_scatter, result);
         for (Spectrum& lamp : result.lamps) lamp = {};
@@ -201,15 +217,9 @@ void PathPixels::render_without_paths(int x, int y, const PathRound& round, Pixe
     result.reflections.assign(order_count_, Spectrum{});
 }
 
-void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,
+void PathPixels::trace(int x, int y, const Batch& batch, Scratch& scratch, Sum& sum,
                        const TracedCallback& traced) const {
-    thread_local std::vector<Ray> rays;
-    thread_local std::vector<int> indices;  // of the rays' paths
-    thread_local std::vector<SurfaceHit> hits;
-    thread_local std::vector<char> found;
-    thread_local std::vector<SurfaceSample> samples;
-    thread_local std::vector<const SurfaceSample*> surfaces;
-    thread_local SurfaceLight light;
+    auto& [view, rays, indices, hits, found, samples, surfaces, light, lamps, segment] = scratch;
     for (int first = 0; first < batch.samples; first += k_rays_at_once) {
         throw_if_stopped();
         const int end = std::min(first + k_rays_at_once, batch.samples);
@@ -243,9 +253,10 @@ void PathPixels::trace(int x, int y, const Batch& batch, PixelView& view, Sum& s
         std::size_t light_index = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const SurfaceSample* const surface = found[i] != 0 ? &samples[i] : nullptr;
-            trace_path(surface, rays[i], light, light_index, batch, indices[i], sum);
+            trace_path(surface, rays[i], light_index, batch, indices[i], scratch, sum);
             if (surface != nullptr) ++light_index;
-            add_lamps_in_view(rays[i], surface != nullptr ? surface->hit.distance : k_far, sum);
+            add_lamps_in_view(rays[i], surface != nullptr ? surface->hit.distance : k_far, lamps,
+                              sum);
         }
         sum.add_rays(rays.size());
         traced(end - first);
@@ -265,8 +276,8 @@ void PathPixels::begin(const SurfaceSample* surface, const Ray& ray, const Surfa
 }
 
 /// Adds the light of lamps that the ray crosses within `max_distance`, that of the surface it hits.
-void PathPixels::add_lamps_in_view(const Ray& ray, double max_distance, Sum& sum) const {
-    thread_local std::vector<SeenLamp> lamps;
+void PathPixels::add_lamps_in_view(const Ray& ray, double max_distance,
+                                   std::vector<SeenLamp>& lamps, Sum& sum) const {
     lamps.clear();
     pixels_.lamps_in_view().append(ray, max_distance, lamps);
     sum.set_part(&PixelResult::direct);
@@ -279,11 +290,10 @@ void PathPixels::add_lamps_in_view(const Ray& ray, double max_distance, Sum& sum
                  .place = ray.at(lamp.distance)});
 }
 
-void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
-                            std::size_t light_index, const Batch& batch, int index,
-                            Sum& sum) const {
-    thread_local CameraSegment segment;
-    begin(surface, ray, light, light_index, segment, sum);
+void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, std::size_t light_index,
+                            const Batch& batch, int index, Scratch& scratch, Sum& sum) const {
+    CameraSegment& segment = scratch.segment;
+    begin(surface, ray, scratch.light, light_index, segment, sum);
     segment.multiply_paths(path_counts_);
     if (pixels_.in_scatter().parts().first_slab)
         sum.set_first_slab(pixels_.in_scatter().first_slab_along(ray));
@@ -304,8 +314,8 @@ constexpr int k_places_across = 12;  // places of a trial across and down the im
 }  // namespace
 
 PathTrial PathPixels::run_trial(double x, double y, std::uint64_t place, int paths) const {
-    thread_local SurfaceLight light;
-    thread_local CameraSegment segment;
+    SurfaceLight light;
+    CameraSegment segment;
     PathTrial trial;
     const Batch batch{place, ~std::uint64_t{0}, paths};
     PathRandom random = batch.random(k_position, 0);
@@ -622,7 +632,7 @@ void PathPass::run(Rendering& rendering) {
                 in_all, static_cast<double>(k_max_paths));
         so_far.begin_round(in_all);
         parallel_for(tasks, [&](std::size_t task) {
-            thread_local PixelResult result;
+            PixelResult result;
             const int y = window.y0 + static_cast<int>(task) / runs;
             const int begin = window.x0 + static_cast<int>(task) % runs * k_run;
             for (int x = begin; x < std::min(begin + k_run, window.x1); ++x) {

@@ -7,7 +7,7 @@
 
 #include "core/passes/pass.h"
 #include "core/passes/pixel_renderer.h"
-#include "core/paths/path_segment.h"
+#include "core/paths/path_walk.h"
 
 namespace uw {
 
@@ -65,16 +65,18 @@ class PathPixels {
   private:
     class Sum;
     struct Batch;
+    struct Scratch;
 
     void begin(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
                std::size_t light_index, CameraSegment& segment, Sum& sum) const;
     void render_without_paths(int x, int y, const PathRound& round, PixelView& view,
                               PixelResult& result) const;
-    void trace(int x, int y, const Batch& batch, PixelView& view, Sum& sum,
+    void trace(int x, int y, const Batch& batch, Scratch& scratch, Sum& sum,
                const TracedCallback& traced) const;
-    void add_lamps_in_view(const Ray& ray, double max_distance, Sum& sum) const;
-    void trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
-                    std::size_t light_index, const Batch& batch, int index, Sum& sum) const;
+    void add_lamps_in_view(const Ray& ray, double max_distance, std::vector<SeenLamp>& lamps,
+                           Sum& sum) const;
+    void trace_path(const SurfaceSample* surface, const Ray& ray, std::size_t light_index,
+                    const Batch& batch, int index, Scratch& scratch, Sum& sum) const;
 
     const PixelRenderer& pixels_;
     std::size_t order_count_;

@@ -59,16 +59,14 @@ AperturePoint PixelSampling::aperture(int i) const {
 
 void find_matches(const PointMatchers& matchers, std::span<PixelView> views) {
     if (!matchers.next && !matchers.previous && !matchers.other_camera) return;
-    thread_local std::vector<const SurfaceHit*> hits;
-    thread_local std::vector<std::optional<PointMatch>> matches;
-    hits.clear();
+    std::vector<const SurfaceHit*> hits;
     // The mirror image that the water's surface shows is not at a point of that surface.
     const auto has_point = [](const PixelView& view) {
         return view.has_hit && !view.hit.is_water_surface;
     };
     for (const PixelView& view : views)
         if (has_point(view)) hits.push_back(&view.hit);
-    matches.resize(hits.size());
+    std::vector<std::optional<PointMatch>> matches(hits.size());
     const auto look = [&](const PointMatcher* matcher,
                           std::optional<PointMatch> PointMatches::*which) {
         if (!matcher) return;
@@ -163,9 +161,9 @@ void PixelRenderer::trace(int x, int y, PixelView& view) const {
 }
 
 void PixelRenderer::trace(const PixelWindow& window, Grid2D<PixelView>& views) const {
-    thread_local std::vector<Ray> rays;
-    thread_local std::vector<SurfaceHit> hits;
-    thread_local std::vector<char> found;
+    std::vector<Ray> rays;
+    std::vector<SurfaceHit> hits;
+    std::vector<char> found;
     views.resize(window.width(), window.height());
     for (int y = window.y0; y < window.y1; ++y) {
         const std::span<PixelView> row = views.row(y - window.y0);
@@ -272,13 +270,13 @@ void PixelRenderer::add_center(PixelView& view) const {
 }
 
 void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
-    thread_local std::vector<double> distances;
-    distances.clear();
     const int count = samples_.count;
     if (count == 1 && samples_.total == 0) {
         add_center(view);
         return;
     }
+    std::vector<double> distances;
+    distances.reserve(static_cast<std::size_t>(count));
     const bool has_aperture = rays_.has_aperture();
     const bool differ = has_aperture || rays_.moves();
     const PixelSampling sampling(samples_, x, y);
@@ -317,8 +315,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
 }
 
 void PixelRenderer::light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const {
-    thread_local std::vector<const SurfaceSample*> samples;
-    samples.clear();
+    std::vector<const SurfaceSample*> samples;
     for (const PixelView& view : views)
         for (const SurfaceSample& sample : view.samples) samples.push_back(&sample);
     transport_.surfaces->evaluate(samples, light);
@@ -356,7 +353,7 @@ void PixelRenderer::store_truth(const PixelView& view, PixelResult& result) cons
 }
 
 void PixelRenderer::find_truth(int x, int y, PixelResult& result) const {
-    thread_local PixelView view;
+    PixelView view;
     result.reset(0);
     begin_view(x, y, view);
     view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
@@ -374,11 +371,10 @@ double PixelRenderer::pixel_factor(const PixelView& view) const {
 }
 
 void PixelRenderer::render(int x, int y, PixelResult& result) const {
-    thread_local PixelView view;
-    thread_local std::vector<double> in_scatter;
-    thread_local SurfaceLight surfaces;
+    PixelView view;
+    SurfaceLight surfaces;
     trace(x, y, view);
-    in_scatter.resize(in_scatter_.value_count());
+    std::vector<double> in_scatter(in_scatter_.value_count());
     in_scatter_.integrate(view, in_scatter);
     light_surfaces(std::span(&view, 1), surfaces);
     shade(view, surfaces, 0, in_scatter, result);

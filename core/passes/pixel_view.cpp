@@ -25,10 +25,9 @@ Interval RayInScatter::first_slab_along(const Ray& ray) const {
 
 void RayInScatter::integrate(const Ray& ray, std::span<const double> distances,
                              std::span<double> values) const {
-    thread_local std::vector<double> stops;
-    thread_local InScatter light;
+    InScatter light;
     const Interval slab = parts_.first_slab ? first_slab_along(ray) : Interval{};
-    stops.assign(distances.begin(), distances.end());
+    std::vector<double> stops(distances.begin(), distances.end());
     const double last = *std::max_element(distances.begin(), distances.end());
     for (const double face : {slab.begin, slab.end})
         if (face > 0 && face < last) stops.push_back(face);
@@ -59,8 +58,7 @@ void RayInScatter::integrate(const Ray& ray, std::span<const double> distances,
 void RayInScatter::integrate(const PixelView& view, std::span<double> values) const {
     std::fill(values.begin(), values.end(), 0.0);
     if (view.distances.empty()) return;
-    thread_local std::vector<double> lists;
-    lists.resize(view.distances.size() * value_count());
+    std::vector<double> lists(view.distances.size() * value_count());
     integrate(*view.ray, view.distances, lists);
     for (std::size_t i = 0; i < view.distances.size(); ++i)
         add_scaled(values, view.weights[i],

@@ -12,7 +12,7 @@ void TruthPass::provide(LayerSupply& supply) const {
 void TruthPass::run(Rendering& rendering) {
     const PixelWindow& window = rendering.film.window();
     parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
-        thread_local PixelResult result;
+        PixelResult result;
         const int y = window.y0 + static_cast<int>(line);
         if (rendering.has_truth && !rendering.has_truth(y)) return;
         for (int x = window.x0; x < window.x1; ++x) {

@@ -112,8 +112,8 @@ IntervalWeights::IntervalWeights(const LitScene& scene, const DistanceIntervals&
 }
 
 void IntervalWeights::find(const Ray& ray, std::vector<float>& weights) const {
-    thread_local ConcentrationProfile profile;
     if (vary()) {
+        ConcentrationProfile profile;
         scene_.field->profile_within(tolerance_, ray, k_far, profile);
         if (profile.s.size() > 2 || !profile.empty_between(0)) {
             weights.assign(uniform_weights_.size(), 0.0F);
@@ -139,9 +139,7 @@ void IntervalWeights::add_uniform(double begin, double end, std::size_t interval
 void IntervalWeights::add_profile(const ConcentrationProfile& profile,
                                   std::vector<float>& weights) const {
     const std::size_t count = per_unit_.size();
-    thread_local std::vector<double> column, concentration;
-    column.assign(count, 0.0);
-    concentration.resize(count);
+    std::vector<double> column(count, 0.0), concentration(count);
     Spectrum depth{}, transmittance{};
     for (std::size_t b = 0; b < bands_; ++b) transmittance[b] = 1;
     double s = 0;

@@ -157,10 +157,9 @@ double GuidingDistribution::source(const Point3& y, const Vector3& direction) co
 }
 
 double estimated_reflection(const GuidingTables& tables, const SurfaceHit& hit,
-                            const Spectrum& weights) {
+                            const Spectrum& weights, std::vector<double>& column) {
     const WaterOptics& optics = tables.optics;
     const LampRadianceTable& field = tables.lamp_radiance;
-    thread_local std::vector<double> column;
     column.resize(optics.constituents());
     const std::size_t bands = optics.bands(), stride = band_stride(bands);
     const double all = sum_of_guiding_bands(weights, bands);

@@ -72,8 +72,8 @@ class GuidingDistribution {
 
 /// Estimates the radiance that a diffuse surface reflects of the light of lamps, by the same
 /// tables: the mean over the bands with `weights` [W m^-2 sr^-1]. Bounded below: a surface that
-/// faces away from the lamps may still be lit by the water.
+/// faces away from the lamps may still be lit by the water. `column`: scratch memory.
 double estimated_reflection(const GuidingTables& tables, const SurfaceHit& hit,
-                            const Spectrum& weights);
+                            const Spectrum& weights, std::vector<double>& column);
 
 }  // namespace uw

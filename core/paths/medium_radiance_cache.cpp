@@ -38,9 +38,7 @@ MediumRadianceCache::MediumRadianceCache(const WaterOptics& optics, const LampRa
     cells_.resize(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) *
                   static_cast<std::size_t>(count_[2]));
     parallel_for(cells_.size(), [&](std::size_t n) {
-        thread_local std::vector<double> column, concentration;
-        column.resize(constituents);
-        concentration.assign(constituents, 0.0);
+        std::vector<double> column(constituents), concentration(constituents, 0.0);
         const auto across = static_cast<std::size_t>(count_[0]);
         const auto down = static_cast<std::size_t>(count_[1]);
         const Point3 x =

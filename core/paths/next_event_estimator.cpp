@@ -1,13 +1,10 @@
 #include "core/paths/next_event_estimator.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
 
 #include "core/geometry/surface_reflection.h"
 #include "core/light/integrator.h"
-#include "core/light/ray_panels.h"
 #include "core/paths/scattering_tables.h"
 
 namespace uw {
@@ -17,27 +14,11 @@ namespace {
 // Below this optical depth the light counts as constant along the interval.
 constexpr double k_even_depth = 1e-6;
 
-/// The interval of a segment that a sun's parallel light illuminates. Distances are sampled in
-/// proportion to the transmittance of uniform water, along the light and back along the segment.
-class ParallelLightInterval {
-  public:
-    ParallelLightInterval() = default;
-    /// `lit`: what the sun illuminates of the line; may be infinite only if the light travels along
-    /// it. `attenuation`: of the water [1/m].
-    ParallelLightInterval(const LampPassage& passage, const Interval& lit, double attenuation)
-        : lit_(lit), rate_(attenuation * (1 + passage.slope)) {}
+// The scattering that a field of unknown profile may add, for choosing a phase function, relative
+// to the known scattering.
+constexpr double k_field_fraction = 0.25;
 
-    /// int e^(-rate s) ds over the interval [m].
-    double effective_length() const;
-    /// Samples a distance by a random number in [0, 1).
-    double sample(double u) const;
-    /// The pdf of the sampled distance [1/m].
-    double pdf(double s) const;
-
-  private:
-    Interval lit_;
-    double rate_ = 0;  // of e^(-rate s) [1/m]
-};
+}  // namespace
 
 double ParallelLightInterval::effective_length() const {
     const double depth = rate_ * lit_.length();
@@ -56,71 +37,6 @@ double ParallelLightInterval::pdf(double s) const {
     if (std::abs(depth) < k_even_depth) return 1 / lit_.length();
     return std::exp(-rate_ * (s - lit_.begin)) / effective_length();
 }
-
-/// A point on a segment where a lamp's light is scattered once, towards the segment's origin.
-struct ScatterPlace {
-    std::size_t lamp = 0;
-    double s = 0;             // along the segment
-    double half_tangent = 0;  // of the scattering angle
-    double radius = 0;        // from the light's origin
-    double pdf = 0;           // of the point [1/m], times Lamp::spread
-};
-
-/// Chooses a lamp and a point on a segment for next-event estimation of in-scattered light:
-/// equiangular sampling (Kulla and Fajardo 2012) weighted by the phase functions around a lamp, by
-/// transmittance in a sun's light. Storage is reused.
-class InScatterSampler {
-  public:
-    /// Weights the lamps and phase functions for a segment of a path.
-    void prepare(const WaterOptics& optics, const ScatteringTables& tables,
-                 const WaterSegment& segment, const PathState& state);
-
-    /// Samples by three random numbers in [0, 1) on the segment of this `length`; none where
-    /// nothing is lit. May be called once after each `prepare`, with the same tables.
-    std::optional<ScatterPlace> sample(const ScatteringTables& tables, double length, double u_lamp,
-                                       double u_phase, double u_angle);
-
-  private:
-    // A lamp that may be chosen.
-    struct Candidate {
-        // An interval of h = tan(psi / 2).
-        struct HalfTangents {
-            double begin = 0, end = 0;
-        };
-
-        std::size_t lamp = 0;
-        double foot = 0, distance = 0;      // LampPassage
-        std::array<HalfTangents, 2> parts;  // outside the lamp's sphere and within its beam
-        std::size_t part_count = 0;
-        double mass = 0;               // integral of the weighted phase functions over the parts
-        std::size_t first_masses = 0;  // index into masses_
-        // For a sun; its mass is that of the weighted phase functions at its one angle:
-        bool parallel = false;
-        ParallelLightInterval interval;
-        LampPassage passage;
-    };
-    // HalfTangentDensity::mass_to at both ends of a part.
-    struct Masses {
-        double from = 0, to = 0;
-    };
-
-    Candidate parallel_candidate(const WaterOptics& optics, const ScatteringTables& tables,
-                                 const WaterSegment& segment, std::size_t lamp,
-                                 const LampPassage& passage, const Interval& lit);
-    static ScatterPlace sample_parallel(const Candidate& candidate, double u);
-    std::optional<ScatterPlace> sample_around(const ScatteringTables& tables,
-                                              const Candidate& candidate, double length,
-                                              double u_phase, double u_angle);
-
-    std::vector<double> phase_weights_;  // of the phase functions on this segment
-    std::vector<Candidate> candidates_;
-    std::vector<Masses> masses_;  // by candidate, part and phase function
-    std::vector<double> cumulative_, phase_;
-};
-
-// The scattering that a field of unknown profile may add, for choosing a phase function, relative
-// to the known scattering.
-constexpr double k_field_fraction = 0.25;
 
 void InScatterSampler::prepare(const WaterOptics& optics, const ScatteringTables& tables,
                                const WaterSegment& segment, const PathState& state) {
@@ -300,23 +216,6 @@ std::optional<ScatterPlace> InScatterSampler::sample_around(const ScatteringTabl
                         0.5 * (1 + h * h) * candidate.distance * density};
 }
 
-struct NextEventWorkspace {
-    // A lamp that illuminates the surface.
-    struct DirectCandidate {
-        std::size_t lamp = 0;
-        double radius = 0, geometry = 0;
-    };
-
-    InScatterSampler in_scatter;
-    std::vector<DirectCandidate> direct;
-    std::vector<double> cumulative;
-    std::vector<double> column, p;
-    WaterPoint point;
-    Spectrum radiance, brdf;
-};
-
-}  // namespace
-
 NextEventEstimator::NextEventEstimator(const WaterOptics& optics, const ScatteringTables& tables,
                                        std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                                        std::vector<std::size_t> emitters)
@@ -336,8 +235,8 @@ void NextEventEstimator::column_to_lamp(std::size_t lamp, const Point3& x,
 }
 
 void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const PathState& state,
-                                             PathRandom& random, ContributionSink& sink) const {
-    thread_local NextEventWorkspace w;
+                                             PathRandom& random, ContributionSink& sink,
+                                             NextEventScratch& w) const {
     const double u_lamp = random.next(), u_phase = random.next(), u_angle = random.next();
     const std::size_t phases = tables_.phase_count();
     if (phases == 0) return;
@@ -381,8 +280,7 @@ void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const 
 void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
                                                const Spectrum& transmittance,
                                                const PathState& state, PathRandom& random,
-                                               ContributionSink& sink) const {
-    thread_local NextEventWorkspace w;
+                                               ContributionSink& sink, NextEventScratch& w) const {
     double u = random.next();
     const std::size_t bands = optics_.bands();
     const std::vector<Lamp>& lamps = *optics_.scene().emitters;
@@ -421,7 +319,7 @@ void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
     }
     if (w.direct.empty()) return;
     const auto [chosen, probability] = choose(w.cumulative, u);
-    const NextEventWorkspace::DirectCandidate& candidate = w.direct[chosen];
+    const NextEventScratch::DirectCandidate& candidate = w.direct[chosen];
     const Lamp& lamp = lamps[candidate.lamp];
     const Point3 origin = lamp.origin(hit.position);
     if (optics_.scene().surfaces->occluded(origin, hit.position)) return;

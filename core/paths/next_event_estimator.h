@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -9,10 +11,110 @@
 #include "core/base/ray.h"
 #include "core/light/integrator.h"
 #include "core/light/lamps_in_view.h"
+#include "core/light/ray_panels.h"
 #include "core/paths/path_segment.h"
 #include "core/paths/scattering_tables.h"
 
 namespace uw {
+
+/// The interval of a segment that a sun's parallel light illuminates. Distances are sampled in
+/// proportion to the transmittance of uniform water, along the light and back along the segment.
+class ParallelLightInterval {
+  public:
+    ParallelLightInterval() = default;
+    /// `lit`: what the sun illuminates of the line; may be infinite only if the light travels along
+    /// it. `attenuation`: of the water [1/m].
+    ParallelLightInterval(const LampPassage& passage, const Interval& lit, double attenuation)
+        : lit_(lit), rate_(attenuation * (1 + passage.slope)) {}
+
+    /// int e^(-rate s) ds over the interval [m].
+    double effective_length() const;
+    /// Samples a distance by a random number in [0, 1).
+    double sample(double u) const;
+    /// The pdf of the sampled distance [1/m].
+    double pdf(double s) const;
+
+  private:
+    Interval lit_;
+    double rate_ = 0;  // of e^(-rate s) [1/m]
+};
+
+/// A point on a segment where a lamp's light is scattered once, towards the segment's origin.
+struct ScatterPlace {
+    std::size_t lamp = 0;
+    double s = 0;             // along the segment
+    double half_tangent = 0;  // of the scattering angle
+    double radius = 0;        // from the light's origin
+    double pdf = 0;           // of the point [1/m], times Lamp::spread
+};
+
+/// Chooses a lamp and a point on a segment for next-event estimation of in-scattered light:
+/// equiangular sampling (Kulla and Fajardo 2012) weighted by the phase functions around a lamp, by
+/// transmittance in a sun's light. Storage is reused.
+class InScatterSampler {
+  public:
+    /// Weights the lamps and phase functions for a segment of a path.
+    void prepare(const WaterOptics& optics, const ScatteringTables& tables,
+                 const WaterSegment& segment, const PathState& state);
+
+    /// Samples by three random numbers in [0, 1) on the segment of this `length`; none where
+    /// nothing is lit. May be called once after each `prepare`, with the same tables.
+    std::optional<ScatterPlace> sample(const ScatteringTables& tables, double length, double u_lamp,
+                                       double u_phase, double u_angle);
+
+  private:
+    // A lamp that may be chosen.
+    struct Candidate {
+        // An interval of h = tan(psi / 2).
+        struct HalfTangents {
+            double begin = 0, end = 0;
+        };
+
+        std::size_t lamp = 0;
+        double foot = 0, distance = 0;      // LampPassage
+        std::array<HalfTangents, 2> parts;  // outside the lamp's sphere and within its beam
+        std::size_t part_count = 0;
+        double mass = 0;               // integral of the weighted phase functions over the parts
+        std::size_t first_masses = 0;  // index into masses_
+        // For a sun; its mass is that of the weighted phase functions at its one angle:
+        bool parallel = false;
+        ParallelLightInterval interval;
+        LampPassage passage;
+    };
+    // HalfTangentDensity::mass_to at both ends of a part.
+    struct Masses {
+        double from = 0, to = 0;
+    };
+
+    Candidate parallel_candidate(const WaterOptics& optics, const ScatteringTables& tables,
+                                 const WaterSegment& segment, std::size_t lamp,
+                                 const LampPassage& passage, const Interval& lit);
+    static ScatterPlace sample_parallel(const Candidate& candidate, double u);
+    std::optional<ScatterPlace> sample_around(const ScatteringTables& tables,
+                                              const Candidate& candidate, double length,
+                                              double u_phase, double u_angle);
+
+    std::vector<double> phase_weights_;  // of the phase functions on this segment
+    std::vector<Candidate> candidates_;
+    std::vector<Masses> masses_;  // by candidate, part and phase function
+    std::vector<double> cumulative_, phase_;
+};
+
+/// Memory in which NextEventEstimator works; what it holds between two calls does not matter.
+struct NextEventScratch {
+    /// A lamp that illuminates the surface.
+    struct DirectCandidate {
+        std::size_t lamp = 0;
+        double radius = 0, geometry = 0;
+    };
+
+    InScatterSampler in_scatter;
+    std::vector<DirectCandidate> direct;
+    std::vector<double> cumulative;
+    std::vector<double> column, p;
+    WaterPoint point;
+    Spectrum radiance, brdf;
+};
 
 /// Next-event estimation: estimates the light of lamps that arrives along a segment after a single
 /// event, in-scattered by the water on the segment or reflected by the surface at its end. Thread
@@ -36,13 +138,14 @@ class NextEventEstimator {
     /// phase functions makes the forward peak constant, too. For a sun, distances are sampled by
     /// transmittance. Uses three random numbers.
     void estimate_in_scatter(const WaterSegment& segment, const PathState& state,
-                             PathRandom& random, ContributionSink& sink) const;
+                             PathRandom& random, ContributionSink& sink,
+                             NextEventScratch& scratch) const;
     /// Estimates the light of one lamp, chosen in proportion to its expected contribution, that the
     /// surface at the end reflects, and adds what the surface emits. `transmittance`: that of the
     /// segment. Uses one random number. Precondition: segment.has_hit.
     void estimate_direct_light(const WaterSegment& segment, const Spectrum& transmittance,
-                               const PathState& state, PathRandom& random,
-                               ContributionSink& sink) const;
+                               const PathState& state, PathRandom& random, ContributionSink& sink,
+                               NextEventScratch& scratch) const;
 
     /// The columns of the constituents between a lamp and a point [unit m].
     void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;

@@ -79,7 +79,7 @@ IrradianceCache NodeLattice::light_surfaces(const NodePaths& paths,
     std::vector<NodeRadiance> lights(unseen.size());
     std::atomic<std::size_t> done = 0;
     parallel_for(unseen.size(), [&](std::size_t at) {
-        thread_local SurfaceErrors errors;
+        SurfaceErrors errors;
         estimator_.estimate_surface(unseen[at], paths.surface, lights[at], errors);
         progress(k_visible_fraction + (1 - k_visible_fraction) * static_cast<double>(++done) /
                                           static_cast<double>(unseen.size()));
@@ -106,7 +106,7 @@ std::vector<SurfaceSample> NodeLattice::find_unseen_surfaces(const IrradianceCac
     };
     Grid2D<std::vector<Found>> found(columns, rows);
     parallel_for(found.size(), [&](std::size_t at) {
-        thread_local std::vector<SurfaceSample> samples;
+        std::vector<SurfaceSample> samples;
         const RadianceEstimator::Place from =
             place(static_cast<int>(at) % columns * k_step, static_cast<int>(at) / columns * k_step);
         const Point3 camera = estimator_.find_lit_surfaces(from, k_paths, samples);
@@ -244,8 +244,8 @@ void NodeLattice::find_errors(const NodeWindow& window, Grid2D<SmoothNode>& node
         const int j = window.j0 + static_cast<int>(at) / columns;
         const RadianceNode& own = raw_(i, j);
         SmoothNode& node = nodes(i, j);
-        thread_local std::vector<double> weights, diffuse;
-        thread_local ErrorSquares water, of_diffuse, of_glossy, around;
+        std::vector<double> weights, diffuse;
+        ErrorSquares water, of_diffuse, of_glossy, around;
         for (ErrorSquares* sums : {&water, &of_diffuse, &of_glossy, &around}) sums->begin(bands);
         for (int v = std::max(window.j0, j - k_variance_radius);
              v <= std::min(window.j1 - 1, j + k_variance_radius); ++v) {

@@ -111,11 +111,9 @@ void average_surface_variances(const Grid2D<RadianceNode>& raw, Grid2D<RadianceN
 // that of Poisson counts to their expectation, and inverse to the numbers of paths.
 void average_water_variances(const Grid2D<RadianceNode>& raw, Grid2D<RadianceNode>& nodes) {
     parallel_for(raw.size(), [&](std::size_t at) {
-        thread_local std::vector<double> variances, weights;
         for (const std::size_t half : {0U, 1U}) {
             std::vector<float>& of_node = nodes[at].halves[half].water_variance;
-            variances.assign(of_node.size(), 0.0);
-            weights.assign(of_node.size(), 0.0);
+            std::vector<double> variances(of_node.size(), 0.0), weights(of_node.size(), 0.0);
             average_around(raw, at, [&](const RadianceNode& other) {
                 const std::vector<float>& of_other = other.halves[half].water_variance;
                 if (of_other.empty()) return;
@@ -202,8 +200,8 @@ class NodeSmoothing {
 
 bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t interval, int i,
                                  int j, SmoothNode& node) const {
-    thread_local LatticeFit fit;
-    thread_local Neighbourhood near;
+    LatticeFit fit;
+    Neighbourhood near;
     const RadianceNode& own = raw_(i, j);
     for (std::size_t half = 0; half < 2; ++half) {
         bool is_reached = false;
@@ -268,9 +266,9 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
 }
 
 void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
-    thread_local LatticeFit fit;
-    thread_local Neighbourhood near;
-    thread_local std::vector<float> squares;
+    LatticeFit fit;
+    Neighbourhood near;
+    std::vector<float> squares;
     const RadianceNode& own = raw_(i, j);
     node.surface = own.surface;
     const auto begin = [&](bool is_there, std::vector<float>& light, std::vector<float>& variance) {

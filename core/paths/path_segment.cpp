@@ -56,15 +56,6 @@ void WaterOptics::trace(const Ray& ray, WaterSegment& segment) const {
     set(ray, found ? &segment.hit : nullptr, segment);
 }
 
-void WaterOptics::trace_briefly(const Ray& ray, WaterSegment& segment) const {
-    throw_if_stopped();
-    segment.ray = ray;
-    segment.has_hit = false;
-    segment.length = std::min(scene_.surfaces->hit_distance(ray), k_far);
-    segment.profile.s.clear();
-    segment.has_field = crosses(bounds_, ray, segment.length);
-}
-
 void WaterOptics::set(const Ray& ray, const SurfaceHit* hit, WaterSegment& segment) const {
     segment.ray = ray;
     segment.has_hit = hit != nullptr;

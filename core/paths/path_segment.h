@@ -151,8 +151,6 @@ class WaterOptics {
 
     /// Finds the end of the segment that begins with `ray`, and the concentrations along it.
     void trace(const Ray& ray, WaterSegment& segment) const;
-    /// The same for a few looks at points of it: no hit, no profile.
-    void trace_briefly(const Ray& ray, WaterSegment& segment) const;
     /// The same as trace for a segment whose end is known: `hit`, or none if null.
     void set(const Ray& ray, const SurfaceHit* hit, WaterSegment& segment) const;
 
@@ -187,23 +185,6 @@ class WaterOptics {
 /// surface.
 struct PathCounts {
     double water = 1, lit = 1, surface = 1;
-};
-
-/// A camera ray in the water up to the first surface, prepared for many paths (PathTracer::begin).
-/// Reused storage.
-struct CameraSegment {
-    WaterSegment water;
-    Spectrum transmittance;  // up to the surface; not set without one
-    /// Where the paths' first scattering lies: running sums of weights of the intervals between
-    /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
-    std::vector<double> distances, cumulative;
-    ExpectedLight expected;
-    /// The mean numbers of paths of each kind that are traced in place of one: fewer where they
-    /// bring less of the ray's light than others.
-    PathCounts paths;
-
-    /// As many times the paths of each kind as `times` says, within limits.
-    void multiply_paths(const PathCounts& times);
 };
 
 }  // namespace uw

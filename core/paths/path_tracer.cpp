@@ -6,11 +6,8 @@
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
-#include "core/light/ray_panels.h"
 #include "core/paths/irradiance_cache.h"
-#include "core/paths/next_event_estimator.h"
 #include "core/paths/path_tables.h"
-#include "core/paths/path_walk.h"
 #include "core/paths/scattering_tables.h"
 
 namespace uw {
@@ -96,21 +93,6 @@ class NoContributions final : public ContributionSink {
 
 }  // namespace
 
-struct PathTracer::Scratch {
-    PathScratch path;
-    // For preparing a camera ray, beside the path's point:
-    std::vector<LampPassage> passages;  // of the lamps
-    std::vector<double> guided, plain;
-    GuidingDistribution guides;
-};
-
-// A thread keeps the memory, since pixels of many threads share the tracer and paths must not
-// allocate. Only the public functions ask for it, and none expects anything to be in it.
-PathTracer::Scratch& PathTracer::scratch_of_thread() {
-    thread_local Scratch scratch;
-    return scratch;
-}
-
 PathTracer::PathTracer(const LitScene& scene,
                        const std::vector<std::shared_ptr<const DeepShadow>>& deep_shadows,
                        std::shared_ptr<const ScatteringTables> scattering)
@@ -140,17 +122,17 @@ const PathTables& PathTracer::choose_tables(PathRandom& random) const {
 
 void PathTracer::begin(const Ray& ray, const SurfaceHit* hit, std::span<const double> surface_light,
                        CameraSegment& segment) const {
-    Scratch& scratch = scratch_of_thread();
+    PathScratch& scratch = segment.scratch;
     const WaterOptics& optics = tables_.front()->optics;
     WaterSegment& water = segment.water;
     optics.set(ray, hit, water);
-    optics.look_up(water, water.length, scratch.path.point);
+    optics.look_up(water, water.length, scratch.point);
     segment.transmittance = {};
-    if (hit) optics.transmittances(water.length, scratch.path.point.column, segment.transmittance);
+    if (hit) optics.transmittances(water.length, scratch.point.column, segment.transmittance);
     scratch.passages.clear();
     for (const Lamp& lamp : *optics.scene().emitters) scratch.passages.emplace_back(ray, lamp);
     place_intervals(scratch.passages, segment);
-    weigh_intervals(surface_light, scratch, segment);
+    weigh_intervals(surface_light, segment);
 }
 
 // The intervals end at equal steps of the transmittance, at the lamps' nearest points, and at knots
@@ -203,8 +185,8 @@ void PathTracer::place_intervals(std::span<const LampPassage> passages,
 // Sets the radiance of the segment's surface, by band, to what is known of it and what the lamps'
 // radiance in infinite water lets expect. Returns the mean of the latter as it arrives at the
 // camera.
-double PathTracer::expect_surface(const CameraSegment& segment,
-                                  std::span<const double> surface_light, Spectrum& radiance) const {
+double PathTracer::expect_surface(CameraSegment& segment, std::span<const double> surface_light,
+                                  Spectrum& radiance) const {
     const PathTables& tables = *tables_.front();
     const std::size_t bands = tables.optics.bands();
     radiance = {};
@@ -213,7 +195,8 @@ double PathTracer::expect_surface(const CameraSegment& segment,
     double all = 0;
     for (const double value : segment.transmittance.first(bands)) all += value;
     const double estimate = estimated_reflection(tables.guides, segment.water.hit,
-                                                 all > 0 ? segment.transmittance : tables.light);
+                                                 all > 0 ? segment.transmittance : tables.light,
+                                                 segment.scratch.column);
     double arriving = 0;
     for (std::size_t b = 0; b < bands; ++b) {
         radiance[b] = std::max(radiance[b], estimate);
@@ -222,7 +205,7 @@ double PathTracer::expect_surface(const CameraSegment& segment,
     return arriving / static_cast<double>(bands);
 }
 
-void PathTracer::weigh_intervals(std::span<const double> surface_light, Scratch& scratch,
+void PathTracer::weigh_intervals(std::span<const double> surface_light,
                                  CameraSegment& segment) const {
     constexpr const FirstScatteringOptions& options = k_first_scattering_options;
     const PathTables& tables = *tables_.front();
@@ -235,7 +218,8 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light, Scratch&
     const bool has_surface = water.has_hit && !water.hit.is_water_surface && !surface_light.empty();
     const double reflected =
         has_surface ? expect_surface(segment, surface_light, light_of_surface) : 0;
-    WaterPoint& point = scratch.path.point;
+    PathScratch& scratch = segment.scratch;
+    WaterPoint& point = scratch.point;
     std::vector<double>&guided = scratch.guided, &plain = scratch.plain;
     guided.clear();
     plain.clear();
@@ -310,18 +294,19 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light, Scratch&
     }
 }
 
-void PathTracer::trace_single(const CameraSegment& segment, PathRandom& random,
+void PathTracer::trace_single(CameraSegment& segment, PathRandom& random,
                               ContributionSink& sink) const {
     const PathTables& tables = choose_tables(random);
     PathState state = begin_path(segment, tables.optics.bands(), sink);
     state.from_water = true;
-    tables.lamps.estimate_in_scatter(segment.water, state, random, sink);
+    tables.lamps.estimate_in_scatter(segment.water, state, random, sink,
+                                     segment.scratch.next_event);
 }
 
 // The first scattering lies where the light along the segment guides it.
-double PathTracer::trace_water_path(const CameraSegment& segment, PathRandom& random,
+double PathTracer::trace_water_path(CameraSegment& segment, PathRandom& random,
                                     ContributionSink& sink) const {
-    PathScratch& scratch = scratch_of_thread().path;
+    PathScratch& scratch = segment.scratch;
     const PathTables& tables = choose_tables(random);
     const WaterOptics& optics = tables.optics;
     double u = random.next();
@@ -343,19 +328,18 @@ double PathTracer::trace_water_path(const CameraSegment& segment, PathRandom& ra
     return walk.work();
 }
 
-double PathTracer::trace_water(const CameraSegment& segment, PathRandom& random,
+double PathTracer::trace_water(CameraSegment& segment, PathRandom& random,
                                ContributionSink& sink) const {
     if (segment.cumulative.empty()) return 0;
     return trace_paths(segment.paths.water, random,
                        [&] { return trace_water_path(segment, random, sink); });
 }
 
-double PathTracer::trace_lit_surface_path(const CameraSegment& segment,
-                                          const IrradianceCache* indirect, PathRandom& random,
-                                          ContributionSink& sink) const {
+double PathTracer::trace_lit_surface_path(CameraSegment& segment, const IrradianceCache* indirect,
+                                          PathRandom& random, ContributionSink& sink) const {
     const PathTables& tables = choose_tables(random);
     PathState state = begin_path_of(segment.paths.lit, segment, tables.optics.bands(), sink);
-    PathWalk walk(tables, random, sink, scratch_of_thread().path);
+    PathWalk walk(tables, random, sink, segment.scratch);
     const WaterSegment* end = walk.walk_to_surface(state, segment.water);
     if (end && indirect)
         walk.trace_lit_surface(state, *end, *indirect);
@@ -364,24 +348,24 @@ double PathTracer::trace_lit_surface_path(const CameraSegment& segment,
     return walk.work();
 }
 
-double PathTracer::trace_lit_surfaces(const CameraSegment& segment, PathRandom& random,
+double PathTracer::trace_lit_surfaces(CameraSegment& segment, PathRandom& random,
                                       ContributionSink& sink) const {
     return trace_paths(segment.paths.lit, random,
                        [&] { return trace_lit_surface_path(segment, nullptr, random, sink); });
 }
 
-double PathTracer::trace_lit_surfaces(const CameraSegment& segment, const IrradianceCache& indirect,
+double PathTracer::trace_lit_surfaces(CameraSegment& segment, const IrradianceCache& indirect,
                                       PathRandom& random, ContributionSink& sink) const {
     return trace_paths(segment.paths.lit, random,
                        [&] { return trace_lit_surface_path(segment, &indirect, random, sink); });
 }
 
-bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& random,
+bool PathTracer::find_lit_surface(CameraSegment& segment, PathRandom& random,
                                   SurfaceSample& sample) const {
     NoContributions sink;
     const PathTables& tables = *tables_.front();
     PathState state = begin_path_of(segment.paths.lit, segment, tables.optics.bands(), sink);
-    PathWalk walk(tables, random, sink, scratch_of_thread().path);
+    PathWalk walk(tables, random, sink, segment.scratch);
     const WaterSegment* end = walk.walk_to_surface(state, segment.water);
     if (end) {
         sample.ray = end->ray;
@@ -390,7 +374,7 @@ bool PathTracer::find_lit_surface(const CameraSegment& segment, PathRandom& rand
     return end != nullptr;
 }
 
-double PathTracer::trace_surface(const CameraSegment& segment, PathRandom& random,
+double PathTracer::trace_surface(CameraSegment& segment, PathRandom& random,
                                  ContributionSink& sink) const {
     if (!segment.water.has_hit || segment.water.hit.is_water_surface) return 0;
     return trace_paths(segment.paths.surface, random, [&] {
@@ -399,21 +383,21 @@ double PathTracer::trace_surface(const CameraSegment& segment, PathRandom& rando
         for (std::size_t b = 0; b < tables.optics.bands(); ++b)
             state.throughput[b] = segment.transmittance[b] / segment.paths.surface;
         state.distance = segment.water.length;
-        PathWalk walk(tables, random, sink, scratch_of_thread().path);
+        PathWalk walk(tables, random, sink, segment.scratch);
         walk.trace_from_surface(state, {segment.water.ray, segment.water.hit, 0, 0});
         return walk.work();
     });
 }
 
 void PathTracer::trace_mirrored(const SurfaceSample& sample, PathRandom& random,
-                                ContributionSink& sink) const {
+                                ContributionSink& sink, PathScratch& scratch) const {
     const PathTables& tables = choose_tables(random);
     PathState state;
     std::ranges::fill(state.throughput.first(tables.optics.bands()), 1.0);
     // Something may shine from everywhere, even where there is no lamp.
     state.expected = {.pixel = 1, .ambient = 1};
     state.distance = sample.hit.distance;
-    PathWalk(tables, random, sink, scratch_of_thread().path).trace_mirrored(state, sample);
+    PathWalk(tables, random, sink, scratch).trace_mirrored(state, sample);
 }
 
 void CameraSegment::multiply_paths(const PathCounts& times) {

@@ -8,14 +8,12 @@
 #include "core/base/random.h"
 #include "core/geometry/surfaces.h"
 #include "core/light/integrator.h"
-#include "core/paths/path_segment.h"
+#include "core/paths/path_walk.h"
 
 namespace uw {
 
 class IrradianceCache;
-struct LampPassage;
 struct LampView;
-struct PathTables;
 struct ScatteringTables;
 
 /// Estimates all light by random paths from the camera, without bias (docs/multiple.md): the
@@ -52,35 +50,31 @@ class PathTracer {
                CameraSegment& segment) const;
 
     /// The light of lamps that the water scatters once, towards the camera.
-    void trace_single(const CameraSegment& segment, PathRandom& random,
-                      ContributionSink& sink) const;
+    void trace_single(CameraSegment& segment, PathRandom& random, ContributionSink& sink) const;
 
     // Three kinds of paths, as many as CameraSegment::paths says. They return what work it was:
     // roughly the number of vertices at which a direction was chosen by all that is known.
 
     /// The light that the water scatters towards the camera, of `multiple.volume`, which no surface
     /// has reflected or emitted.
-    double trace_water(const CameraSegment& segment, PathRandom& random,
-                       ContributionSink& sink) const;
+    double trace_water(CameraSegment& segment, PathRandom& random, ContributionSink& sink) const;
     /// And that of surfaces, which the water scatters on its way to the camera.
-    double trace_lit_surfaces(const CameraSegment& segment, PathRandom& random,
+    double trace_lit_surfaces(CameraSegment& segment, PathRandom& random,
                               ContributionSink& sink) const;
     /// The same. `indirect`: the light on the first of the surfaces that is not direct, by lamp or
     /// all in one; from glossy ones paths go on.
-    double trace_lit_surfaces(const CameraSegment& segment, const IrradianceCache& indirect,
+    double trace_lit_surfaces(CameraSegment& segment, const IrradianceCache& indirect,
                               PathRandom& random, ContributionSink& sink) const;
     /// The first surface that such a path meets, and the path's last ray; false if it meets none.
-    bool find_lit_surface(const CameraSegment& segment, PathRandom& random,
-                          SurfaceSample& sample) const;
+    bool find_lit_surface(CameraSegment& segment, PathRandom& random, SurfaceSample& sample) const;
     /// The light that the segment's surface reflects, other than direct light of lamps, and not
     /// what it emits: `multiple.surface`. Nothing without a surface.
-    double trace_surface(const CameraSegment& segment, PathRandom& random,
-                         ContributionSink& sink) const;
+    double trace_surface(CameraSegment& segment, PathRandom& random, ContributionSink& sink) const;
     /// Traces the part of trace_surface's light that was scattered or reflected once, or emitted,
     /// before the sample reflects it. It is the light at the surface itself, not dimmed by the
     /// water in front of it.
-    void trace_mirrored(const SurfaceSample& sample, PathRandom& random,
-                        ContributionSink& sink) const;
+    void trace_mirrored(const SurfaceSample& sample, PathRandom& random, ContributionSink& sink,
+                        PathScratch& scratch) const;
     /// Whether a contribution of trace_surface is one of trace_mirrored.
     static bool is_mirrored(const PathContribution& contribution) {
         return contribution.scatterings + contribution.reflections ==
@@ -88,19 +82,15 @@ class PathTracer {
     }
 
   private:
-    struct Scratch;
-
-    static Scratch& scratch_of_thread();
     const PathTables& choose_tables(PathRandom& random) const;
-    double trace_water_path(const CameraSegment& segment, PathRandom& random,
+    double trace_water_path(CameraSegment& segment, PathRandom& random,
                             ContributionSink& sink) const;
-    double trace_lit_surface_path(const CameraSegment& segment, const IrradianceCache* indirect,
+    double trace_lit_surface_path(CameraSegment& segment, const IrradianceCache* indirect,
                                   PathRandom& random, ContributionSink& sink) const;
     void place_intervals(std::span<const LampPassage> passages, CameraSegment& segment) const;
-    double expect_surface(const CameraSegment& segment, std::span<const double> surface_light,
+    double expect_surface(CameraSegment& segment, std::span<const double> surface_light,
                           Spectrum& radiance) const;
-    void weigh_intervals(std::span<const double> surface_light, Scratch& scratch,
-                         CameraSegment& segment) const;
+    void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 
     std::shared_ptr<const ScatteringTables> scattering_;
     std::vector<LampView> views_;

@@ -94,7 +94,8 @@ void PathWalk::trace_from_water(PathState state, const WaterSegment& segment,
 }
 
 void PathWalk::trace_from_surface(PathState state, const SurfaceSample& surface) {
-    const double radiance = estimated_reflection(tables_.guides, surface.hit, state.throughput);
+    const double radiance =
+        estimated_reflection(tables_.guides, surface.hit, state.throughput, scratch_.column);
     if (radiance > 0)
         state.expected = {.pixel = contribution_of(radiance, state, tables_.optics.bands()),
                           .ambient = k_expectation_options.ambient_of_reflection * radiance};
@@ -356,7 +357,7 @@ double PathWalk::water_surface_reflectance(const WaterSegment& segment) const {
 
 void PathWalk::estimate_next_event(PathState& state, const PathSegment& segment) {
     const WaterSegment& water = segment.water;
-    tables_.lamps.estimate_in_scatter(water, state, random_, sink_);
+    tables_.lamps.estimate_in_scatter(water, state, random_, sink_, scratch_.next_event);
     if (!water.has_hit || state.stays_in_water || meets_water_surface(water)) return;
     add_surface_light(state, water, segment.transmittance);
 }
@@ -365,7 +366,8 @@ void PathWalk::estimate_next_event(PathState& state, const PathSegment& segment)
 // lamps are faint beside it, paths would split for ever, and go on by chance alone.
 void PathWalk::add_surface_light(PathState& state, const WaterSegment& segment,
                                  const Spectrum& transmittance) {
-    tables_.lamps.estimate_direct_light(segment, transmittance, state, random_, sink_);
+    tables_.lamps.estimate_direct_light(segment, transmittance, state, random_, sink_,
+                                        scratch_.next_event);
     if (!segment.hit.has_material) return;
     const std::size_t bands = tables_.optics.bands();
     const SurfaceMaterial material = tables_.optics.scene().surfaces->material(segment.hit);
@@ -395,7 +397,7 @@ void PathWalk::expect_surface(const PathState& state, PathSegment& segment) {
         meets_water_surface(water)
             ? water_surface_reflectance(water) * expected_in_mirror(state, water, arriving)
             : std::max(k_expectation_options.ambient_of_surface * state.expected.ambient,
-                       estimated_reflection(tables_.guides, water.hit, arriving));
+                       estimated_reflection(tables_.guides, water.hit, arriving, scratch_.column));
     segment.surface_contribution = arrived * segment.surface_radiance;
 }
 
@@ -414,7 +416,7 @@ double PathWalk::expected_in_mirror(const PathState& state, const WaterSegment& 
     SurfaceHit hit;
     if (optics.scene().surfaces->closest_hit(mirrored, k_far, hit) && !hit.is_water_surface)
         radiance += std::exp(-optics.attenuation().uniform[optics.clearest_band()] * hit.distance) *
-                    estimated_reflection(tables_.guides, hit, throughput);
+                    estimated_reflection(tables_.guides, hit, throughput, scratch_.column);
     return radiance;
 }
 
@@ -538,10 +540,10 @@ void PathWalk::trace_lit_surface(PathState state, const WaterSegment& segment) {
     const std::size_t bands = tables_.optics.bands();
     add_surface_light(state, segment, per_band(bands, [](std::size_t) { return 1.0; }));
     const SurfaceSample surface{segment.ray, segment.hit, 0, 0};
-    const double contribution =
-        contribution_of(estimated_reflection(tables_.guides, surface.hit, state.throughput) +
-                            k_ambient_beyond * state.expected.ambient,
-                        state, bands);
+    const double contribution = contribution_of(
+        estimated_reflection(tables_.guides, surface.hit, state.throughput, scratch_.column) +
+            k_ambient_beyond * state.expected.ambient,
+        state, bands);
     const double q =
         std::clamp(contribution / state.expected.pixel, k_splitting_options.min_at_lit_surface,
                    k_splitting_options.max_at_lit_surface);

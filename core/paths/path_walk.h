@@ -6,7 +6,9 @@
 #include "core/base/random.h"
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
+#include "core/light/ray_panels.h"
 #include "core/paths/direction_sampler.h"
+#include "core/paths/next_event_estimator.h"
 #include "core/paths/path_segment.h"
 #include "core/paths/path_tables.h"
 
@@ -41,7 +43,30 @@ struct PathScratch {
     std::vector<Collision> collisions;
     std::vector<PathState> branches;  // that have yet to be followed
     GuidingDistribution guides_in_mirror;
-    std::vector<double> cumulative, indirect;
+    std::vector<double> cumulative, indirect, column;
+    NextEventScratch next_event;
+    // For preparing a camera ray, beside the point:
+    std::vector<LampPassage> passages;  // of the lamps
+    std::vector<double> guided, plain;
+    GuidingDistribution guides;
+};
+
+/// A camera ray in the water up to the first surface, prepared for many paths (PathTracer::begin).
+/// Its storage is reused. No two paths of a segment are traced at a time, since they work in it.
+struct CameraSegment {
+    WaterSegment water;
+    Spectrum transmittance;  // up to the surface; not set without one
+    /// Where the paths' first scattering lies: running sums of weights of the intervals between
+    /// `distances`, in each of which it is uniform. Empty where the water scatters no light.
+    std::vector<double> distances, cumulative;
+    ExpectedLight expected;
+    /// The mean numbers of paths of each kind that are traced in place of one: fewer where they
+    /// bring less of the ray's light than others.
+    PathCounts paths;
+    PathScratch scratch;
+
+    /// As many times the paths of each kind as `times` says, within limits.
+    void multiply_paths(const PathCounts& times);
 };
 
 /// Traces a light path from its first vertex, and all branches into which it splits. With the

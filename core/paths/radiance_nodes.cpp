@@ -135,14 +135,9 @@ class RadianceEstimator::SurfaceSum final : public ContributionSink {
     double batch_ = 0;
 };
 
-RadianceEstimator::Workspace& RadianceEstimator::workspace_of_thread() {
-    thread_local Workspace workspace;
-    return workspace;
-}
-
 void RadianceEstimator::estimate_surface(const Place& place, const NodePaths& paths,
                                          RadianceNode& node) const {
-    Workspace& w = workspace_of_thread();
+    Workspace w;
     node = {};
     const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
     if (!ray) return;
@@ -156,7 +151,7 @@ void RadianceEstimator::estimate_surface(const Place& place, const NodePaths& pa
 
 Point3 RadianceEstimator::find_lit_surfaces(const Place& place, int paths,
                                             std::vector<SurfaceSample>& samples) const {
-    Workspace& w = workspace_of_thread();
+    Workspace w;
     samples.clear();
     const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
     if (!ray) return {};
@@ -174,7 +169,7 @@ Point3 RadianceEstimator::find_lit_surfaces(const Place& place, int paths,
 
 void RadianceEstimator::estimate_surface(const SurfaceSample& sample, int paths,
                                          NodeRadiance& light, SurfaceErrors& errors) const {
-    Workspace& w = workspace_of_thread();
+    Workspace w;
     RadianceNode node;
     begin(sample, true, w, node);
     const auto x = static_cast<std::uint64_t>(64 * sample.x);
@@ -228,7 +223,7 @@ void RadianceEstimator::begin(const SurfaceSample& sample, bool has_hit, Workspa
 void RadianceEstimator::estimate_water(const Place& place, const NodePaths& paths,
                                        const IrradianceCache& indirect, double typical_light,
                                        RadianceNode& node) const {
-    Workspace& w = workspace_of_thread();
+    Workspace w;
     const std::optional<Ray> ray = rays_.refracted_ray(place.x, place.y);
     if (!ray) return;
     SurfaceHit hit;
@@ -310,7 +305,8 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
 void RadianceEstimator::estimate_mirrored(const SurfaceSample& sample, int paths,
                                           std::vector<double>& radiance,
                                           std::vector<double>& squares) const {
-    thread_local std::vector<double> of_path;
+    std::vector<double> of_path;
+    PathScratch scratch;
     radiance.assign(groups_ * bands(), 0.0);
     squares.assign(bands(), 0.0);
     SurfaceSum sum(groups_, bands(), of_path, false);
@@ -321,7 +317,7 @@ void RadianceEstimator::estimate_mirrored(const SurfaceSample& sample, int paths
     for (int i = 0; i < paths; ++i) {
         PathRandom random(PathRandom::seed_of(x, y, k_mirrored), static_cast<std::uint32_t>(i));
         of_path.assign(radiance.size(), 0.0);
-        transport_.paths->trace_mirrored(glossy, random, sum);
+        transport_.paths->trace_mirrored(glossy, random, sum, scratch);
         for (std::size_t b = 0; b < bands(); ++b) {
             double light = 0;
             for (std::size_t k = b; k < of_path.size(); k += bands()) light += of_path[k];

@@ -135,7 +135,6 @@ class RadianceEstimator {
     class SurfaceSum;
     struct Workspace;
 
-    static Workspace& workspace_of_thread();
     void begin(const SurfaceSample& sample, bool has_hit, Workspace& w, RadianceNode& node) const;
     void trace_surface(std::uint64_t seed, int paths, Workspace& w, RadianceNode& node) const;
 

@@ -226,17 +226,10 @@ void SurfaceHalo::trace(const RaySource& rays, const LitScene& scene,
                         const SurfaceLighting& lighting, const Radiance& radiance) {
     Grid2D<float> angles(cells_.width(), cells_.height());
     parallel_for(static_cast<std::size_t>(cells_.height()), [&](std::size_t row) {
-        thread_local std::vector<Ray> water_rays;
-        thread_local std::vector<int> columns;
-        thread_local std::vector<SurfaceHit> hits;
-        thread_local std::vector<char> found;
-        thread_local std::vector<SurfaceSample> samples;
-        thread_local std::vector<const SurfaceSample*> pointers;
-        thread_local SurfaceLight light;
+        std::vector<Ray> water_rays;
+        std::vector<int> columns;
         const int j = static_cast<int>(row);
         const double y = (j + 0.5) * spacing_;
-        water_rays.clear();
-        columns.clear();
         for (int i = 0; i < cells_.width(); ++i) {
             cells_(i, j).distance = std::numeric_limits<float>::infinity();
             const double x = (i + 0.5) * spacing_;
@@ -250,17 +243,18 @@ void SurfaceHalo::trace(const RaySource& rays, const LitScene& scene,
                 angles(i, j) = static_cast<float>(std::sqrt(glm::length(glm::cross(
                     right->direction - ray->direction, below->direction - ray->direction))));
         }
-        hits.resize(water_rays.size());
-        found.resize(water_rays.size());
+        std::vector<SurfaceHit> hits(water_rays.size());
+        std::vector<char> found(water_rays.size());
         scene.surfaces->closest_hits(water_rays, k_far, hits, found);
-        samples.clear();
+        std::vector<SurfaceSample> samples;
         for (std::size_t k = 0; k < water_rays.size(); ++k) {
             if (!found[k]) continue;
             cells_(columns[k], j).distance = static_cast<float>(hits[k].distance);
             samples.push_back({water_rays[k], hits[k], (columns[k] + 0.5) * spacing_, y});
         }
-        pointers.clear();
+        std::vector<const SurfaceSample*> pointers;
         for (const SurfaceSample& sample : samples) pointers.push_back(&sample);
+        SurfaceLight light;
         lighting.evaluate(pointers, light);
         std::vector<double> values(channels_);
         for (std::size_t k = 0, sample = 0; k < water_rays.size(); ++k) {
@@ -320,7 +314,7 @@ void SurfaceHalo::find_cells_of_pixel(double x, double y, std::vector<Corner>& c
 void SurfaceHalo::add(double x, double y, double distance, double weight,
                       std::span<double> radiance) const {
     if (intervals_ == 0) return;
-    thread_local std::vector<Corner> cells;
+    std::vector<Corner> cells;
     find_cells_of_pixel(x, y, cells);
     // Only cells that show the same surface are used, if there are any.
     const auto agrees = [&](const Corner& corner) {

@@ -67,8 +67,7 @@ double weight_at(double distance, double reference) {
 bool follows(const ConcentrationProfile& profile, const Filled& part, std::size_t count,
              const float* samples, double reference, const DepthTolerance& tolerance) {
     const auto constituents = static_cast<std::size_t>(profile.constituent_count);
-    thread_local std::vector<double> error;
-    error.resize(constituents);
+    std::vector<double> error(constituents);
     const double begin = profile.s[part.first];
     const double per_metre = static_cast<double>(count) / (profile.s[part.last] - begin);
     for (std::size_t knot = part.first + 1; knot < part.last; ++knot) {
@@ -125,7 +124,7 @@ ColumnFace::ColumnFace(int width, int height, int constituents, double step, dou
 void ColumnFace::trace(int apart, const DepthTolerance& tolerance, const March& march) {
     const auto bands = static_cast<std::size_t>((rays_.height() - 1) / k_square + 1);
     parallel_for(bands, [&](std::size_t band) {
-        thread_local ConcentrationProfile profile;
+        ConcentrationProfile profile;
         const int v0 = static_cast<int>(band) * k_square;
         const int v1 = std::min(v0 + k_square, rays_.height());
         for (int u0 = 0; u0 < rays_.width(); u0 += k_square) {
@@ -190,9 +189,7 @@ bool ColumnFace::confirmed(int square_u, int square_v, int apart,
 }
 
 bool ColumnFace::agree(int u, int v, int apart, const DepthTolerance& tolerance) const {
-    thread_local std::vector<double> mixed, traced;
-    mixed.resize(constituents_);
-    traced.resize(constituents_);
+    std::vector<double> mixed(constituents_), traced(constituents_);
     const TexelRay& ray = rays_(u, v);
     const auto agree_at = [&](double distance) {
         std::fill(mixed.begin(), mixed.end(), 0.0);
@@ -371,7 +368,7 @@ void ColumnMap::columns(std::span<const Point3> x, std::span<double> column) con
 void ColumnMap::append_breaks(const Ray& ray, const Interval& interval,
                               std::vector<double>& s) const {
     if (resolution_ == 0) return;
-    thread_local std::vector<FaceSegment> segments;
+    std::vector<FaceSegment> segments;
     split_by_face(ray, lamp_, interval, segments);
     for (const FaceSegment& segment : segments) {
         const Face& face = faces_[static_cast<std::size_t>(segment.face)];

@@ -210,11 +210,9 @@ void ShadowMap::trace_face(int face_index) {
     Grid2D<float> depth(padded, padded, DepthPyramid::k_untraced);
     std::atomic<std::uint64_t> traced = 0;
     parallel_for(static_cast<std::size_t>(padded), [&](std::size_t row) {
-        thread_local std::vector<Vector3> directions;
-        thread_local std::vector<double> hits;
-        thread_local std::vector<std::size_t> columns;
-        directions.clear();
-        columns.clear();
+        std::vector<Vector3> directions;
+        std::vector<double> hits;
+        std::vector<std::size_t> columns;
         const double v = (2.0 * static_cast<double>(row) - 1.0) / n - 1.0;
         const std::span<float> samples = depth.row(static_cast<int>(row));
         const Vector3 middle = face.direction(0, v), across = face.direction(1, v) - middle;
@@ -251,7 +249,7 @@ class ShadowMap::Search {
 
     void run(const Interval& interval) {
         edges_.set_interval(interval);
-        thread_local std::vector<FaceSegment> segments;
+        std::vector<FaceSegment> segments;
         split_by_face(ray_, map_.lamp_, interval, segments);
         for (const FaceSegment& segment : segments) {
             face_ = CubeFace(segment.face);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/base/parallel.h"
+#include "tests/support/image_laws.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {
@@ -76,16 +76,8 @@ TEST_F(CameraSensors, CountWhatTheRadianceOfEachBandMakes) {
 }
 
 TEST_F(CameraSensors, NoiseDependsNeitherOnThreadsNorOnCrops) {
-    const Film whole = film();
-    {
-        const ThreadLimit one(1);
-        EXPECT_TRUE(std::ranges::equal(film().values(), whole.values()));
-    }
-    const PixelWindow window{11, 5, 30, 22};
-    const Film part = film({.layers = "sensor", .window = window});
-    for (int y = window.y0; y < window.y1; ++y)
-        for (int x = window.x0; x < window.x1; ++x)
-            EXPECT_TRUE(std::ranges::equal(part.pixel(x, y), whole.pixel(x, y)));
+    const Film whole =
+        expect_same_for_threads_and_windows(desc_, {.layers = "sensor"}, {11, 5, 30, 22});
     const Film later = film({.layers = "sensor", .frame = 1});
     int differ = 0;
     for (int y = 0; y < 30; ++y)

@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "tests/support/forward/forward_direct_sum.h"
 #include "tests/support/forward/forward_scenes.h"
+#include "tests/support/image_laws.h"
 
 namespace uw::test {
 namespace {
@@ -68,22 +68,6 @@ TEST(ForwardScatter, OfAPointHasTheEnergyOfItsRangeInBothPlaces) {
     }
 }
 
-TEST(ForwardScatter, TotalIsTheSumOfItsComponentsToTheBit) {
-    const RenderedFilm image(scattering(staged(), forward(1)));
-    for (int y = 0; y < 24; ++y)
-        for (int x = 0; x < 32; ++x)
-            for (int band = 0; band < 3; ++band) {
-                const auto part = [&](Layer layer) {
-                    return static_cast<float>(image.value(layer, x, y, band));
-                };
-                const float sum =
-                    part(Layer::direct) + part(Layer::forward) + part(Layer::backscatter);
-                EXPECT_EQ(static_cast<float>(image.total(x, y, band)), sum);
-                const double lamps = image.lamp(0, x, y, band) + image.lamp(1, x, y, band);
-                EXPECT_NEAR(lamps, static_cast<double>(sum), 1e-5 * lamps);
-            }
-}
-
 bool same_bits(const Film& a, const Film& b) {
     return a.values().size() == b.values().size() &&
            std::memcmp(a.values().data(), b.values().data(), a.values().size_bytes()) == 0;
@@ -95,13 +79,13 @@ TEST(ForwardScatter, OfStrengthZeroIsOffToTheBit) {
         same_bits(RenderedFilm(scattering(staged(), none)).film(), RenderedFilm(staged()).film()));
 }
 
-TEST(ForwardScatter, IsTheSameToTheBitOnOneThreadAndTwo) {
-    const SceneDesc desc = scattering(staged(), forward(1, Shape::exponential));
-    const auto rendered = [&](int threads) {
-        const ThreadLimit limit(threads);
-        return RenderedFilm(desc);
-    };
-    EXPECT_TRUE(same_bits(rendered(1).film(), rendered(2).film()));
+TEST(ForwardScatter, IsTheSameForThreadsAndWindowsAndAddsUp) {
+    for (const Shape shape : {Shape::gaussian, Shape::exponential}) {
+        const SceneDesc desc = scattering(staged(), forward(1, shape));
+        const Film film =
+            expect_same_for_threads_and_windows(desc, {.layers = "all,lamps"}, {5, 3, 20, 17});
+        EXPECT_GT(expect_components_add_up(film), 0);
+    }
 }
 
 TEST(ForwardScatter, DoublesWithTheLamps) {

@@ -8,6 +8,7 @@
 
 #include "tests/support/forward/forward_direct_sum.h"
 #include "tests/support/forward/forward_scenes.h"
+#include "tests/support/image_laws.h"
 
 namespace uw::test {
 namespace {
@@ -103,21 +104,13 @@ TEST(ForwardScatterOnSensor, ComponentsAddUpToTheBitAndStrengthZeroIsOff) {
         EXPECT_EQ(std::memcmp(none.film().values().data(), plain.film().values().data(),
                               plain.film().values().size_bytes()),
                   0);
+        EXPECT_GT(expect_components_add_up(image.film()), 0);
         for (int y = 0; y < 24; ++y)
             for (int x = 0; x < 32; ++x)
-                for (int band = 0; band < 3; ++band) {
-                    const auto part = [&](Layer layer) {
-                        return static_cast<float>(image.value(layer, x, y, band));
-                    };
-                    const float sum =
-                        part(Layer::direct) + part(Layer::forward) + part(Layer::backscatter);
-                    EXPECT_EQ(static_cast<float>(image.total(x, y, band)), sum);
-                    const double lamps = image.lamp(0, x, y, band) + image.lamp(1, x, y, band);
-                    EXPECT_NEAR(lamps, static_cast<double>(sum), 1e-5 * lamps);
+                for (int band = 0; band < 3; ++band)
                     EXPECT_NEAR(image.value(Layer::direct, x, y, band),
                                 plain.value(Layer::direct, x, y, band),
                                 k_float_rounding * plain.value(Layer::direct, x, y, band));
-                }
     }
 }
 

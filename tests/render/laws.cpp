@@ -1,9 +1,8 @@
 // ctest labels: metamorphic threads
 #include <gtest/gtest.h>
 
-#include <cstring>
-
-#include "core/base/parallel.h"
+#include "core/image/layers.h"
+#include "tests/support/image_laws.h"
 #include "tests/support/test_scene.h"
 
 namespace uw::test {
@@ -17,32 +16,28 @@ SceneDesc lit_box() {
     return desc;
 }
 
-TEST(RenderLaws, OneThreadAndTwoGiveTheSameBits) {
-    const auto render = [](int threads) {
-        const ThreadLimit limit(threads);
-        return TestScene(lit_box()).image();
-    };
-    const std::vector<PixelResult> one = render(1), two = render(2);
-    ASSERT_EQ(one.size(), two.size());
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        EXPECT_EQ(std::memcmp(&one[i].backscatter, &two[i].backscatter, sizeof(Spectrum)), 0);
-        EXPECT_EQ(std::memcmp(&one[i].direct, &two[i].direct, sizeof(Spectrum)), 0);
-        EXPECT_EQ(one[i].depth_z, two[i].depth_z);
-    }
+TEST(RenderLaws, ImagesAreTheSameForThreadsAndWindowsAndAddUp) {
+    const Film film =
+        expect_same_for_threads_and_windows(lit_box(), {.layers = "all,lamps"}, {5, 3, 20, 17});
+    EXPECT_GT(expect_components_add_up(film), 0);
 }
 
 TEST(RenderLaws, TwiceTheLampIsTwiceTheImage) {
     SceneDesc bright = lit_box();
     bright.lamps = {isotropic_lamp({1, -0.5, 0}, 100)};
-    const std::vector<PixelResult> dim = TestScene(lit_box()).image();
-    const std::vector<PixelResult> twice = TestScene(bright).image();
-    for (std::size_t i = 0; i < dim.size(); ++i) {
-        for (std::size_t band = 0; band < 3; ++band) {
-            // A power of two changes only exponents: the images are equal to the bit.
-            EXPECT_EQ(twice[i].backscatter[band], 2 * dim[i].backscatter[band]);
-            EXPECT_EQ(twice[i].direct[band], 2 * dim[i].direct[band]);
-        }
-    }
+    const RenderOptions all{.layers = "all"};
+    const Film dim = image_of(lit_box(), all), twice = image_of(bright, all);
+    const auto is_light_of_lamps = [&](const std::string& name) {
+        return name != "A" &&
+               (is_light(name) || name.starts_with("irradiance.") || name.starts_with("exitance."));
+    };
+    for (int y = 0; y < dim.height(); ++y)
+        for (int x = 0; x < dim.width(); ++x)
+            for (std::size_t c = 0; c < dim.channel_names().size(); ++c)
+                // A power of two changes only exponents: the images are equal to the bit.
+                EXPECT_EQ(twice.pixel(x, y)[c],
+                          (is_light_of_lamps(dim.channel_names()[c]) ? 2 : 1) * dim.pixel(x, y)[c])
+                    << dim.channel_names()[c];
 }
 
 TEST(RenderLaws, LampsAddUpToTheTotal) {

@@ -8,11 +8,10 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "render/image_scene.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
-#include "tests/support/image_of.h"
+#include "tests/support/image_laws.h"
 #include "tests/support/message_of.h"
 
 namespace uw::test {
@@ -215,17 +214,8 @@ TEST(RollingShutter, RefusesFlowOfSurfacesThatMove) {
 TEST(RollingShutter, IsTheSameForThreadsAndCrops) {
     const ImageScene scene =
         scene_of_image(pole_scene("line_time: 0.0005, ", "samples: 8, shutter: 0.02"), {10});
-    const RenderOptions layers{.layers = "direct,backscatter,depth,flow"};
-    const Film whole = image_of(scene, layers);
-    {
-        const ThreadLimit one(1);
-        EXPECT_TRUE(std::ranges::equal(image_of(scene, layers).values(), whole.values()));
-    }
-    const PixelWindow window{5, 13, 37, 34};
-    const Film part = image_of(scene, {.layers = layers.layers, .window = window});
-    for (int y = window.y0; y < window.y1; ++y)
-        for (int x = window.x0; x < window.x1; ++x)
-            EXPECT_TRUE(std::ranges::equal(part.pixel(x, y), whole.pixel(x, y)));
+    expect_same_for_threads_and_windows(scene, {.layers = "direct,backscatter,depth,flow"},
+                                        {5, 13, 37, 34});
 }
 
 }  // namespace

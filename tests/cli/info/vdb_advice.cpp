@@ -323,18 +323,5 @@ TEST_F(VdbAdviceTest, ADomainIsWhereItsParentsPutIt) {
     EXPECT_TRUE(says(sheared, "Its domain had its corner at"));
 }
 
-TEST_F(VdbAdviceTest, AFullDomainMayBeAnAdaptiveOne) {
-    test::VdbFixture full = cube("density");
-    full.blender_metadata = true;
-    full.base_resolution = {26, 24, 40};
-    test::write_fixture(dir_ / "b.vdb", {full}, "");
-    EXPECT_TRUE(
-        says(advise_on_vdb(inspect_vdb(dir_ / "b.vdb", "here"), "b.vdb"), "It fills its domain"));
-    full.base_resolution = {64, 64, 64};
-    test::write_fixture(dir_ / "b.vdb", {full}, "");
-    EXPECT_FALSE(
-        says(advise_on_vdb(inspect_vdb(dir_ / "b.vdb", "here"), "b.vdb"), "It fills its domain"));
-}
-
 }  // namespace
 }  // namespace uw

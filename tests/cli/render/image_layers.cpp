@@ -101,38 +101,6 @@ TEST_F(ImageLayers, OtherBandsAreNamedByWavelength) {
     }
 }
 
-TEST_F(ImageLayers, ComponentsSumToTheTotalToTheBit) {
-    write("scene.yaml", std::string(test::k_small_scene) + "render: {samples: 4}\n");
-    const ImageFile image = render();
-    for (const char* band : {"R", "G", "B"}) {
-        const std::string suffix = std::string(".") + band;
-        const std::vector<float>& total = image.channels.at(band);
-        bool both = false;
-        for (std::size_t i = 0; i < total.size(); ++i) {
-            const float direct = image.channels.at("direct" + suffix)[i];
-            const float backscatter = image.channels.at("backscatter" + suffix)[i];
-            ASSERT_EQ(total[i], direct + backscatter);
-            both = both || (direct > 0 && backscatter > 0);
-        }
-        EXPECT_TRUE(both);
-    }
-}
-
-TEST_F(ImageLayers, TwiceTheLampDoublesEveryRadianceToTheBit) {
-    const ImageFile once = render();
-    const ImageFile twice = render({"--set", "lamps.left.intensity=[100, 80, 60]"});
-    for (const char* layer :
-         {"", "direct.", "backscatter.", "clean.", "irradiance.", "exitance."}) {
-        for (const char* band : {"R", "G", "B"}) {
-            const std::string name = std::string(layer) + band;
-            for (std::size_t i = 0; i < once.channels.at(name).size(); ++i)
-                ASSERT_EQ(2 * once.channels.at(name)[i], twice.channels.at(name)[i]) << name;
-        }
-    }
-    EXPECT_EQ(once.channels.at("depth.Z"), twice.channels.at("depth.Z"));
-    EXPECT_EQ(once.channels.at("transmittance.G"), twice.channels.at("transmittance.G"));
-}
-
 TEST_F(ImageLayers, CropHoldsThePixelsOfTheWholeToTheBit) {
     const ImageFile whole = render({"--layers", "all", "--samples", "4"});
     const ImageFile part = render({"--layers", "all", "--samples", "4", "--crop", "7,3,29,18"});
@@ -184,15 +152,6 @@ TEST_F(ImageLayers, SizeScalesTheIntrinsics) {
                 const float there = large.at(name, 3 * x + 1, 3 * y + 1);
                 ASSERT_NEAR(small.at(name, x, y), there, 1e-3 * std::abs(there) + 1e-6) << name;
             }
-}
-
-TEST_F(ImageLayers, OneThreadAndTwoWriteTheSameBytes) {
-    render({"--threads", "1", "--layers", "all"});
-    const std::string exr = read("out.exr"), png = read("out.png");
-    render({"--threads", "2", "--layers", "all"});
-    EXPECT_EQ(read("out.exr"), exr);
-    EXPECT_EQ(read("out.png"), png);
-    EXPECT_GT(png.size(), 100U);
 }
 
 TEST_F(ImageLayers, SetReplacesWhatTheFileSays) {

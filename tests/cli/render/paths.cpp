@@ -169,14 +169,5 @@ TEST_F(Paths, AreRecommendedWhereLampsLieTooFarForTheFastForm) {
     EXPECT_EQ(run(far).err.find("the nearest lamp"), std::string::npos);
 }
 
-TEST_F(Paths, AreTheSameInEveryCrop) {
-    const ImageFile whole = render(with({"--layers", "all"}));
-    const ImageFile part = render(with({"--layers", "all", "--crop", "3,2,9,7"}));
-    for (const auto& [name, values] : part.channels)
-        for (int y = 2; y < 7; ++y)
-            for (int x = 3; x < 9; ++x)
-                ASSERT_EQ(part.at(name, x, y), whole.at(name, x, y)) << name;
-}
-
 }  // namespace
 }  // namespace uw

@@ -1,17 +1,14 @@
 // ctest labels: analytic
-// Where the sun stands, and how bright it is.
+// Where the sun stands.
 #include "core/light/sun.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
 #include <string>
 
 #include "core/base/vector_math.h"
-#include "core/image/spectral_bands.h"
 
 namespace uw::test {
 namespace {
@@ -48,8 +45,6 @@ TEST(Sun, StandsWhereTheSolarPositionAlgorithmSays) {
         EXPECT_NEAR((sun.azimuth - known.azimuth) * std::cos(known.elevation * k_degree), 0, 0.01)
             << known.place;
     }
-    // The example's distance.
-    EXPECT_NEAR(sun_position(k_example, 0, 0).distance, 0.9965423, 1e-4);
 }
 
 TEST(Sun, IsRefractedByTheAir) {
@@ -63,40 +58,6 @@ TEST(Sun, IsRefractedByTheAir) {
     EXPECT_NEAR(sun.apparent_elevation(), 0, 0.01);
     sun.elevation = -20;
     EXPECT_EQ(sun.apparent_elevation(), -20);
-}
-
-TEST(Sun, ShinesThroughMoreAirTheLowerItStands) {
-    // Kasten and Young 1989, by zenith angles of 20, 40 and 70 degrees.
-    EXPECT_NEAR(air_mass(70), 1.0637, 1e-4);
-    EXPECT_NEAR(air_mass(50), 1.3042, 1e-4);
-    EXPECT_NEAR(air_mass(20), 2.9031, 1e-4);
-    EXPECT_NEAR(air_mass(0), 37.92, 0.01);
-}
-
-TEST(Sun, HasABlackbodysLightLessWhatTheAirTakes) {
-    const std::array bands_nm{600.0, 550.0, 500.0, 450.0};
-    constexpr double k_elevation = 35, k_turbidity = 3, k_distance = 1.01;
-    const Spectrum found = direct_sun_irradiance(k_elevation, k_turbidity, k_distance, bands_nm);
-    for (std::size_t band = 0; band < bands_nm.size(); ++band) {
-        // Planck's law, as irradiance of a sphere of the sun's size and distance: E = pi B (R /
-        // d)^2, with (R / d)^2 = total / (sigma T^4).
-        const double metres = bands_nm[band] * 1e-9;
-        const double exponent = 6.62607015e-34 * 299792458.0 / (metres * 1.380649e-23 * 5772);
-        const double radiance = 2 * 6.62607015e-34 * std::pow(299792458.0, 2) /
-                                std::pow(metres, 5) / std::expm1(exponent);
-        const double size = 1361 / (5.670374419e-8 * std::pow(5772, 4)) / (k_distance * k_distance);
-        const double above = std::numbers::pi * radiance * size * 1e-9 * 50;  // in a band of 50 nm
-        const double micrometres = bands_nm[band] / 1000;
-        const double dimmed = std::exp(-air_mass(k_elevation) *
-                                       (0.008735 * std::pow(micrometres, -4.08) +
-                                        (0.04608 * 3 - 0.04586) * std::pow(micrometres, -1.3)));
-        // Planck's law is averaged over the band, in which it curves: 0.3 %.
-        EXPECT_NEAR(found[band], above * dimmed, 0.003 * found[band]);
-    }
-    EXPECT_EQ(found[4], 0);
-    EXPECT_EQ(direct_sun_irradiance(-0.1, 3, 1, bands_nm), Spectrum());
-    const std::array one_band{550.0};
-    EXPECT_THROW(direct_sun_irradiance(40, 3, 1, one_band), std::invalid_argument);
 }
 
 }  // namespace

@@ -99,17 +99,19 @@ TEST(PathLaws, MirroredLightIsPartOfTheSurfacesLight) {
     std::atomic<int> others = 0;
     const auto parts = run_batches(32, 3, 1, [&](std::uint64_t seed, TermSums& sums) {
         MirroredPart part(sums, ones);
+        CameraSegment of_batch = segment;
         for (std::uint32_t i = 0; i < k_paths; ++i) {
             PathRandom random(seed, i);
-            tracer.trace_surface(segment, random, part);
+            tracer.trace_surface(of_batch, random, part);
         }
         others += part.others;
     });
     const auto mirrored = run_batches(32, 3, 2, [&](std::uint64_t seed, TermSums& sums) {
         MirroredPart part(sums, segment.transmittance.first(3));
+        PathScratch scratch;
         for (std::uint32_t i = 0; i < k_paths; ++i) {
             PathRandom random(seed, i);
-            tracer.trace_mirrored(sample, random, part);
+            tracer.trace_mirrored(sample, random, part, scratch);
         }
         EXPECT_EQ(part.others, 0);
     });

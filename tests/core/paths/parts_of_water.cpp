@@ -36,7 +36,7 @@ TEST(LitSurfaces, FillTheWaterOfAWhiteFurnace) {
         SurfaceHit hit;
         ASSERT_TRUE(scene.surfaces->closest_hit(ray, k_far, hit));
         const auto batches = run_batches(32, 3, 5, [&](std::uint64_t seed, TermSums& sums) {
-            thread_local CameraSegment segment;
+            CameraSegment segment;
             tracer.begin(ray, &hit, {}, segment);
             constexpr std::uint32_t k_paths = 1 << 10;
             sums.set_weight(1.0 / k_paths);
@@ -85,7 +85,7 @@ TEST(WaterAlone, IsWhatNoSurfaceReflects) {
     const auto batches_of = [&](std::uint64_t seed, auto trace) {
         return run_batches(32, scene.band_count(), seed,
                            [&](std::uint64_t batch_seed, TermSums& sums) {
-                               thread_local CameraSegment segment;
+                               CameraSegment segment;
                                tracer.begin(ray, has_hit ? &hit : nullptr, {}, segment);
                                constexpr std::uint32_t k_paths = 1 << 11;
                                sums.set_weight(1.0 / k_paths);
@@ -96,13 +96,12 @@ TEST(WaterAlone, IsWhatNoSurfaceReflects) {
                            });
     };
     const auto alone =
-        batches_of(1, [&](const CameraSegment& segment, PathRandom& random, TermSums& sums) {
+        batches_of(1, [&](CameraSegment& segment, PathRandom& random, TermSums& sums) {
             tracer.trace_water(segment, random, sums);
         });
-    const auto all =
-        batches_of(2, [&](const CameraSegment& segment, PathRandom& random, TermSums& sums) {
-            trace_scattered(tracer, segment, random, sums);
-        });
+    const auto all = batches_of(2, [&](CameraSegment& segment, PathRandom& random, TermSums& sums) {
+        trace_scattered(tracer, segment, random, sums);
+    });
     Deviations deviations;
     for (std::size_t b = 0; b < scene.band_count(); ++b) {
         const auto untouched = [&](const TermSums& sums) {

@@ -194,10 +194,10 @@ std::vector<Parts> trace(bool with_box) {
     scene.add_lamp(k_lamp, 1);
     if (with_box) scene.set_surfaces({with_reflectance(box(k_min, k_max), 0, 1)});
     const PathTracer tracer(scene.lit());
-    CameraSegment segment;
-    tracer.begin(camera_ray(), nullptr, {}, segment);
     std::vector<Parts> batches(k_batches);
     parallel_for(k_batches, [&](std::size_t n) {
+        CameraSegment segment;
+        tracer.begin(camera_ray(), nullptr, {}, segment);
         for (std::uint32_t i = 0; i < k_paths; ++i) {
             PathRandom single(PathRandom::seed_of(n, 1), i), water(PathRandom::seed_of(n, 2), i);
             tracer.trace_single(segment, single, batches[n]);

@@ -170,9 +170,10 @@ TEST(ClosedRooms, AShiningSurfaceReflectsTheIntegralOfItsBrdf) {
         const auto mirrored = run_batches(32, 1, 2, [&](std::uint64_t seed, TermSums& sums) {
             constexpr std::uint32_t k_paths = 1 << 11;
             sums.set_weight(1.0 / k_paths);
+            PathScratch scratch;
             for (std::uint32_t i = 0; i < k_paths; ++i) {
                 PathRandom random(seed, i);
-                tracer.trace_mirrored(sample, random, sums);
+                tracer.trace_mirrored(sample, random, sums, scratch);
             }
         });
         deviations.add(what + " mirrored",

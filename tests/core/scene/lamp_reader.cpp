@@ -6,39 +6,21 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
-#include "core/scene/yaml_document.h"
-#include "tests/support/scene_folder.h"
+#include "tests/support/section_reader.h"
 
 namespace uw {
 namespace {
 
-class LampReader : public ::testing::Test {
+class LampReader : public test::SectionReader<std::vector<LampDesc>> {
   protected:
-    std::vector<LampDesc> read(const std::string& text) const {
-        const ConfigNode node = parse_yaml(text, "scene.yaml");
-        return read_lamps(ConfigValue(node, "lamps"), context_);
-    }
+    LampReader() : SectionReader("lamps", read_lamps) {}
+
     /// The profile of a lamp that is whole but for it.
     template <class Desc>
     Desc profile(const std::string& text) const {
         const std::string lamp = "[{position: [0, 0, 0], intensity: 1, profile: " + text + "}]";
         return std::get<Desc>(read(lamp).at(0).profile);
     }
-
-    void expect_refused(const std::string& text, const std::string& part) const {
-        try {
-            read(text);
-            FAIL() << text;
-        } catch (const InputError& error) {
-            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-            EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos);
-        }
-    }
-
-    test::SceneFolder folder_;
-    std::vector<std::string> warnings_;
-    SceneContext context_{folder_.path(), 3, &warnings_};
 };
 
 TEST_F(LampReader, ReadsEachProfile) {
@@ -157,16 +139,9 @@ TEST_F(LampReader, OnlyAbsoluteProfilesNeedNoOutput) {
 }
 
 TEST_F(LampReader, NamesAllProfiles) {
-    try {
-        profile<IsotropicProfileDesc>("{type: laser}");
-        FAIL();
-    } catch (const InputError& error) {
-        const std::string message = error.what();
-        EXPECT_NE(message.find("lamps[0].profile.type: unknown value 'laser'; use one of: "
-                               "isotropic, spot, cosine, table, ies"),
-                  std::string::npos)
-            << message;
-    }
+    expect_refused("[{position: [0, 0, 0], intensity: 1, profile: {type: laser}}]",
+                   "lamps[0].profile.type: unknown value 'laser'; use one of: isotropic, spot, "
+                   "cosine, table, ies");
 }
 
 }  // namespace

@@ -6,23 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
-#include "core/scene/yaml_document.h"
-#include "tests/support/scene_folder.h"
+#include "tests/support/section_reader.h"
 
 namespace uw {
 namespace {
 
-class PhaseReader : public ::testing::Test {
+class PhaseReader : public test::SectionReader<PhaseDesc> {
   protected:
-    PhaseDesc read(const std::string& text) const {
-        const ConfigNode node = parse_yaml(text, "scene.yaml");
-        return read_phase(ConfigValue(node, "water.scattering.phase"), context_);
-    }
-
-    test::SceneFolder folder_;
-    std::vector<std::string> warnings_;
-    SceneContext context_{folder_.path(), 3, &warnings_, std::nullopt};
+    PhaseReader() : SectionReader("water.scattering.phase", read_phase) {}
 };
 
 TEST_F(PhaseReader, ReadsEachType) {
@@ -48,15 +39,9 @@ TEST_F(PhaseReader, TwoSpellingsOfAFileAreEqual) {
 }
 
 TEST_F(PhaseReader, NamesAllTypes) {
-    try {
-        read("{type: isotropic}");
-        FAIL();
-    } catch (const InputError& error) {
-        EXPECT_STREQ(
-            error.what(),
-            "scene.yaml:1:8: water.scattering.phase.type: unknown value 'isotropic'; use one "
-            "of: hg, fournier-forand, petzold, table, water");
-    }
+    expect_refused("{type: isotropic}",
+                   "water.scattering.phase.type: unknown value 'isotropic'; use one of: hg, "
+                   "fournier-forand, petzold, table, water");
 }
 
 }  // namespace

@@ -8,29 +8,14 @@
 #include <variant>
 #include <vector>
 
-#include "core/base/error.h"
-#include "core/scene/yaml_document.h"
-#include "tests/support/message_of.h"
-#include "tests/support/scene_folder.h"
+#include "tests/support/section_reader.h"
 
 namespace uw::test {
 namespace {
 
-class SkyReader : public ::testing::Test {
+class SkyReader : public SectionReader<SkyDesc> {
   protected:
-    SkyDesc read(const std::string& text) const {
-        const ConfigNode node = parse_yaml(text, "scene.yaml");
-        return read_sky(ConfigValue(node, "sky"), context_);
-    }
-    void expect_refused(const std::string& text, const std::string& part) const {
-        const std::string message = message_of<InputError>([&] { read(text); });
-        EXPECT_NE(message.find(part), std::string::npos) << text << "\n  gave: " << message;
-        EXPECT_EQ(message.find("scene.yaml:1:"), 0U) << message;
-    }
-
-    SceneFolder folder_;
-    std::vector<std::string> warnings_;
-    SceneContext context_{folder_.path(), 3, &warnings_};
+    SkyReader() : SectionReader("sky", read_sky) {}
 };
 
 TEST_F(SkyReader, ReadsEachModel) {

@@ -10,28 +10,15 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/scene_folder.h"
+
 namespace uw::test {
 
-/// A temporary folder for mesh files written by a test; removed with everything in it.
-class MeshFolder {
+/// A temporary folder for mesh files written by a test.
+class MeshFolder : public SceneFolder {
   public:
-    MeshFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "uwvdb-mesh-XXXXXX").string();
-        if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make " + name);
-        path_ = name;
-    }
-    ~MeshFolder() { std::filesystem::remove_all(path_); }
-    MeshFolder(const MeshFolder&) = delete;
-    MeshFolder& operator=(const MeshFolder&) = delete;
-
-    std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(path_ / name, std::ios::binary) << bytes;
-        return path_ / name;
-    }
-    std::filesystem::path path(const std::string& name) const { return path_ / name; }
-
-  private:
-    std::filesystem::path path_;
+    using SceneFolder::path;
+    std::filesystem::path path(const std::string& name) const { return path() / name; }
 };
 
 /// The bytes of numbers as they lie in memory (little-endian machines).

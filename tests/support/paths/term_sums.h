@@ -64,8 +64,8 @@ class TermSums final : public ContributionSink {
 };
 
 /// One path of either kind that begins with a scattering; `tracer` gives the segment one of each.
-inline void trace_scattered(const PathTracer& tracer, const CameraSegment& segment,
-                            PathRandom& random, ContributionSink& terms) {
+inline void trace_scattered(const PathTracer& tracer, CameraSegment& segment, PathRandom& random,
+                            ContributionSink& terms) {
     tracer.trace_water(segment, random, terms);
     tracer.trace_lit_surfaces(segment, random, terms);
 }
@@ -75,7 +75,7 @@ inline void trace_ray(const PathTracer& tracer, const Surfaces& surfaces, const 
                       std::uint64_t seed, std::uint32_t paths, TermSums& sums, double weight = 1) {
     SurfaceHit hit;
     const bool has_hit = surfaces.closest_hit(ray, k_far, hit);
-    thread_local CameraSegment segment;
+    CameraSegment segment;
     tracer.begin(ray, has_hit ? &hit : nullptr, {}, segment);
     sums.set_weight(weight / paths);
     // Seeds of their own, so that none of the three has random numbers in common with another.
