@@ -1,6 +1,7 @@
 // ctest labels: analytic
 // What others have published: a canonical problem of ocean optics with few rays, and the rest.
 #include "validation/published.h"
+#include "media/water/tabulated_phase.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "media/water/phase_functions.h"
 #include "validation/light_trial.h"
 #include "validation/published_tables.h"
 
@@ -54,7 +54,7 @@ double asymptotic_k(double albedo) {
         const double t = (i + 0.5) / k_steps;
         const double angle = std::numbers::pi * t * t * t;
         const double cosine = std::cos(angle);
-        const double weight = 2 * std::numbers::pi * std::sin(angle) * phase.evaluate(angle) * 3 *
+        const double weight = 2 * std::numbers::pi * std::sin(angle) * phase.eval(angle) * 3 *
                               std::numbers::pi * t * t / k_steps;
         double before = 1, here = cosine;
         moments[0] += weight;
