@@ -87,7 +87,7 @@ py::array_t<double> scattering_function(const WaterObject& water, const DoubleRo
         for (py::ssize_t i = 0; i < result.shape(1); ++i) cell(band, i) = 0;
     std::vector<double> p(psi.size());
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
-        medium.phase_functions[m]->evaluate(psi, p);
+        medium.phase_functions[m]->eval(psi, p);
         for (py::ssize_t band = 0; band < result.shape(0); ++band)
             for (std::size_t i = 0; i < p.size(); ++i)
                 cell(band, static_cast<py::ssize_t>(i)) +=

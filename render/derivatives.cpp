@@ -204,15 +204,6 @@ std::vector<Spectrum> scattering_fractions(const Medium& medium) {
     return fractions;
 }
 
-ParticleDerivative derivative_by_particles(const AssembledScene& scene, const std::string& name) {
-    try {
-        return particle_derivative(scene.desc().water, scene.desc().volumes,
-                                   name == k_small ? WaterParticles::small : WaterParticles::large);
-    } catch (const UsageError& fault) {
-        throw UsageError(fmt::format("derivative {}: {}", name, fault.what()));
-    }
-}
-
 std::size_t constituent_called(const std::string& name, const Medium& medium) {
     const std::string_view wanted = std::string_view(name).substr(k_concentration.size());
     const auto found = std::ranges::find(medium.constituents, wanted, &Constituent::name);
@@ -236,16 +227,13 @@ Medium with_one_more(const std::string& name, const AssembledScene& scene) {
         unit.absorption *= 2.0;
         for (Spectrum& b : unit.scattering) b *= 2.0;
     } else if (name == k_small || name == k_large) {
-        ParticleDerivative particles = derivative_by_particles(scene, name);
-        // These are the water's own phase functions, followed by those of the particles.
-        const std::size_t phases = particles.phase_functions.size();
-        medium.phase_functions = std::move(particles.phase_functions);
-        medium.uniform.scattering.resize(phases);
-        medium.uniform.absorption += particles.per_ppm.absorption;
-        for (std::size_t m = 0; m < phases; ++m)
-            medium.uniform.scattering[m] += particles.per_ppm.scattering[m];
-        for (Constituent& constituent : medium.constituents)
-            constituent.per_unit.scattering.resize(phases);
+        try {
+            return with_one_more_ppm(
+                scene.water, scene.desc().water, scene.desc().volumes,
+                name == k_small ? WaterParticles::small : WaterParticles::large);
+        } catch (const UsageError& fault) {
+            throw UsageError(fmt::format("derivative {}: {}", name, fault.what()));
+        }
     } else if (name == "water.absorption") {
         for (double& a : medium.uniform.absorption.first(bands)) a += 1;
     } else if (name == "water.scattering") {

@@ -46,7 +46,7 @@ std::vector<float> scene_derivatives(Renderer& renderer, std::span<const Changed
 ///   phase function as it is [per 1/m]. Bands do not affect each other: each pixel has one
 ///   derivative per band.
 /// - "water.particles.small", "water.particles.large": the concentration of the water's own
-///   particles (particle_derivative) [per ppm].
+///   particles (with_one_more_ppm) [per ppm].
 /// - "concentration.NAME": a factor on all concentrations of a constituent of the volumes, at 1.
 ///
 /// Otherwise as scene_derivatives, for which the scene has to contain a parameter's key. Throws

@@ -136,7 +136,7 @@ class PointLight {
                 if (!(relative > 0) || scene_.surfaces->occluded(origin, x)) continue;
                 scene_.field->column(origin, x, column);
                 const double h = passage.half_tangent(s, radius);
-                phases_.evaluate(std::span(&h, 1), p);
+                phases_.eval(std::span(&h, 1), p);
                 double beta = 0;
                 for (std::size_t m = 0; m < p.size(); ++m) beta += point.scattering[m][band] * p[m];
                 const double tau = optics_.attenuation().optical_depth(band, radius, column);

@@ -177,18 +177,18 @@ void LayerPlan::add_layers(const Selection& selection, std::span<const std::stri
     for (std::size_t i = 0; i < k_layer_count; ++i) {
         const bool is_rgb = i == static_cast<std::size_t>(Layer::total) && band_count_ == 3;
         if (!selection.layers[i] || is_rgb) continue;
-        first_[i] = static_cast<int>(channel_names_.size());
-        if (k_layers[i].content == LayerContent::matte) {
+        const LayerKind& kind = k_layers[i];
+        const std::size_t first = channel_names_.size();
+        if (kind.content == LayerContent::matte)
             std::ranges::copy(
-                matte_channels(k_layers[i].layer == Layer::crypto_object ? MatteOf::objects
-                                                                         : MatteOf::materials),
+                matte_channels(kind.layer == Layer::crypto_object ? MatteOf::objects
+                                                                  : MatteOf::materials),
                 std::back_inserter(channel_names_));
-            channel_counts_[i] = k_matte_values;
-            continue;
-        }
-        const auto suffixes = suffixes_of(k_layers[i], bands, selection.supply);
-        channel_counts_[i] = suffixes.size();
-        add_channels(std::string(k_layers[i].name), suffixes);
+        else
+            add_channels(std::string(kind.name), suffixes_of(kind, bands, selection.supply));
+        first_[i] = static_cast<int>(first);
+        channel_counts_[i] = channel_names_.size() - first;
+        groups_.push_back({kind.content, kind.layer, kind.is_by_band(), first, channel_counts_[i]});
     }
 }
 
@@ -204,7 +204,7 @@ void LayerPlan::add_lamps(const Selection& selection, std::span<const std::strin
                             lamp_names[lamp]));
         }
         first_of_lamp_[lamp] = static_cast<int>(channel_names_.size());
-        add_channels(std::string(k_lamp_prefix) + lamp_names[lamp], bands);
+        add_light(std::string(k_lamp_prefix) + lamp_names[lamp], bands);
     }
 }
 
@@ -213,13 +213,19 @@ void LayerPlan::add_orders(int orders, std::span<const std::string> bands) {
     order_count_ = static_cast<std::size_t>(orders) + 2;
     for (const std::string_view what : k_orders) {
         for (int order = 0; order <= orders; ++order)
-            add_channels(fmt::format("{}.{}", what, order), bands);
-        add_channels(fmt::format("{}.more", what), bands);
+            add_light(fmt::format("{}.{}", what, order), bands);
+        add_light(fmt::format("{}.more", what), bands);
     }
 }
 
 bool LayerPlan::has_lamps() const {
     return std::ranges::any_of(first_of_lamp_, [](int channel) { return channel >= 0; });
+}
+
+void LayerPlan::add_light(const std::string& name, std::span<const std::string> bands) {
+    groups_.push_back(
+        {LayerContent::light, Layer::count, true, channel_names_.size(), bands.size()});
+    add_channels(name, bands);
 }
 
 void LayerPlan::add_channels(const std::string& layer, std::span<const std::string> suffixes) {

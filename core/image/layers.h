@@ -62,6 +62,12 @@ enum class LayerContent {
     number,  ///< the sensor's
 };
 
+/// Whether it is of all of an exposure, not of its middle.
+constexpr bool is_of_exposure(LayerContent content) {
+    return content == LayerContent::light || content == LayerContent::exact ||
+           content == LayerContent::share || content == LayerContent::matte;
+}
+
 /// All that is said of a layer besides how it is filled.
 struct LayerKind {
     /// The effect of forward scatter, a second pass over the image, on a layer.
@@ -81,9 +87,7 @@ struct LayerKind {
     constexpr bool is_light() const {
         return content == LayerContent::light || content == LayerContent::exact;
     }
-    constexpr bool of_exposure() const {
-        return is_light() || content == LayerContent::share || content == LayerContent::matte;
-    }
+    constexpr bool is_by_band() const { return suffixes.empty() && content != LayerContent::matte; }
 };
 
 namespace layer_hints {
@@ -187,6 +191,17 @@ struct LayerSupply {
     std::size_t sensor_values = 0;  // numbers per pixel of the camera's sensor, 1 or 3
 };
 
+/// Adjacent channels of an image: the colour R G B, the coverage A, a layer, or the light of one
+/// lamp or order.
+struct ChannelGroup {
+    LayerContent content;
+    Layer layer;              ///< Layer::count if it is not a layer of k_layers
+    bool is_by_band;          ///< whether there is one channel per band
+    std::size_t first, size;  ///< of its channels
+
+    std::span<float> of(std::span<float> pixel) const { return pixel.subspan(first, size); }
+};
+
 /// Which channels an image has, what they are called, and where each layer begins.
 ///
 /// The first four channels are always R, G, B, A. Layers of one value per band are named
@@ -212,6 +227,10 @@ class LayerPlan {
 
     /// The names of all channels in the file, in order.
     const std::vector<std::string>& channel_names() const { return channel_names_; }
+
+    /// The same channels in groups. What is done to all light of an image goes through these, so
+    /// that a new layer has no line of its own there.
+    std::span<const ChannelGroup> groups() const { return groups_; }
 
     /// Index of the layer's first channel; its others follow. -1 if it was not requested.
     int first_channel(Layer layer) const { return first_[static_cast<std::size_t>(layer)]; }
@@ -255,9 +274,12 @@ class LayerPlan {
     void add_lamps(const Selection& selection, std::span<const std::string> lamp_names,
                    std::span<const std::string> bands);
     void add_orders(int orders, std::span<const std::string> bands);
+    void add_light(const std::string& name, std::span<const std::string> bands);
     void add_channels(const std::string& layer, std::span<const std::string> suffixes);
 
     std::vector<std::string> channel_names_{"R", "G", "B", "A"};
+    std::vector<ChannelGroup> groups_{{LayerContent::light, Layer::count, false, 0, 3},
+                                      {LayerContent::share, Layer::count, false, 3, 1}};
     std::size_t band_count_;
     LayerSet provided_;
     std::array<int, k_layer_count> first_{};

@@ -52,8 +52,7 @@ PhaseIntegrals::PhaseIntegrals(const Medium& medium)
             const auto at = static_cast<double>(knot);
             const double begin = angle(at - 1), end = angle(at);
             sum += (end - begin) / 6 *
-                   (phase.evaluate(begin) + 4 * phase.evaluate(0.5 * (begin + end)) +
-                    phase.evaluate(end));
+                   (phase.eval(begin) + 4 * phase.eval(0.5 * (begin + end)) + phase.eval(end));
             integrals_[knot * phases_ + m] = sum;
         }
     }

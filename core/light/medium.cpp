@@ -23,9 +23,8 @@ Spectrum AttenuationTable::transmittance(double length, std::span<const double> 
 
 namespace {
 
-// The table covers psi = 1.2e-7, below which none of our phase functions varies by more than 2 %,
-// to pi - 1e-4.
-constexpr double k_min_half_tangent = 0x1p-24, k_max_half_tangent = 0x1p14;
+constexpr double k_min_half_tangent = PhaseFunction::k_min_half_tangent;
+constexpr double k_max_half_tangent = PhaseFunction::k_max_half_tangent;
 constexpr int k_cell_bits = 6;  // of the mantissa: 64 cells per octave
 constexpr int k_offset_bits = 52 - k_cell_bits;
 constexpr std::uint64_t k_first = std::bit_cast<std::uint64_t>(k_min_half_tangent) >> k_offset_bits;
@@ -49,7 +48,7 @@ PhaseTable::PhaseTable(const Medium& medium)
         const std::array<double, 3> psi{angle(begin), angle(0.5 * (begin + end)), angle(end)};
         for (std::size_t m = 0; m < phases_; ++m) {
             std::array<double, 3> p{};
-            medium.phase_functions[m]->evaluate(psi, p);
+            medium.phase_functions[m]->eval(psi, p);
             double* c = &coefficients_[(cell * phases_ + m) * 3];
             c[0] = p[0];
             c[1] = 4 * p[1] - 3 * p[0] - p[2];
@@ -58,8 +57,8 @@ PhaseTable::PhaseTable(const Medium& medium)
     }
 }
 
-UWVDB_VECTOR_CLONES void PhaseTable::evaluate(std::span<const double> half_tangent,
-                                              std::span<double> p) const {
+UWVDB_VECTOR_CLONES void PhaseTable::eval(std::span<const double> half_tangent,
+                                          std::span<double> p) const {
     if (phases_ == 0) return;  // non-scattering water has no table
     constexpr std::uint64_t k_offset_mask = (std::uint64_t{1} << k_offset_bits) - 1;
     constexpr double k_offset_unit = 1.0 / (std::uint64_t{1} << k_offset_bits);

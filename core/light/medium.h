@@ -9,33 +9,10 @@
 
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
+#include "core/light/phase_function.h"
 #include "core/light/strata.h"
 
 namespace uw {
-
-/// Angular distribution of scattered light, p(psi) in 1/sr, with 2 pi int p sin(psi) dpsi = 1. psi
-/// is the angle between the light's directions of travel before and after scattering: 0 is forward,
-/// pi is back towards the source (physics: cos psi = w_in . w_out).
-class PhaseFunction {
-  public:
-    virtual ~PhaseFunction() = default;
-
-    /// p at each angle `psi` [rad, 0..pi], into `p` of the same length.
-    virtual void evaluate(std::span<const double> psi, std::span<double> p) const = 0;
-
-    /// Angles [rad], ascending and inside (0, pi), where p is not smooth: quadrature should be
-    /// split there.
-    virtual std::vector<double> breakpoints() const { return {}; }
-
-    /// Name and parameters for reports, e.g. "henyey-greenstein g=0.9".
-    virtual std::string description() const = 0;
-
-    double evaluate(double psi) const {
-        double p = 0;
-        evaluate(std::span<const double>(&psi, 1), std::span<double>(&p, 1));
-        return p;
-    }
-};
 
 /// Inherent optical properties, absolute or per unit of concentration: a(lambda) and, for each
 /// phase function m of the medium, its scattering coefficient b_m(lambda). [1/m], or [1/m per ppm],
@@ -123,7 +100,7 @@ class PhaseTable {
 
     /// p_m of phase function m at each `half_tangent` >= 0 (infinity: psi = pi), into
     /// p[m * half_tangent.size() + i] [1/sr].
-    void evaluate(std::span<const double> half_tangent, std::span<double> p) const;
+    void eval(std::span<const double> half_tangent, std::span<double> p) const;
 
     friend bool operator==(const PhaseTable&, const PhaseTable&) = default;
 

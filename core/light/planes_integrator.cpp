@@ -147,7 +147,7 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
     w.phase.resize(w.psi.size());
     w.beta.assign(w.psi.size(), Spectrum{});
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
-        medium.phase_functions[m]->evaluate(w.psi, w.phase);
+        medium.phase_functions[m]->eval(w.psi, w.phase);
         const Spectrum& scattering = medium.uniform.scattering[m];
         for (std::size_t i = 0; i < w.psi.size(); ++i)
             add_scaled(w.beta[i].first(bands), w.phase[i], scattering.first(bands));

@@ -125,7 +125,7 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     const Spectrum transmittance = attenuation_.transmittance(radius + s, from_lamp_column);
     Spectrum result;
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
-        const double p = medium.phase_functions[m]->evaluate(psi);
+        const double p = medium.phase_functions[m]->eval(psi);
         Spectrum b = medium.uniform.scattering[m];
         for (std::size_t k = 0; k < constituents; ++k)
             b += concentration[k] * medium.constituents[k].per_unit.scattering[m];
@@ -220,7 +220,7 @@ class QuadratureIntegrator::RayIntegral {
         if (relative <= 0 || owner_.scene_.surfaces->occluded(origin, x)) return value;
         const Medium& medium = *owner_.scene_.medium;
         for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
-            const double p = medium.phase_functions[m]->evaluate(psi);
+            const double p = medium.phase_functions[m]->eval(psi);
             value += medium.uniform.scattering[m] * p;
         }
         value *= per_band(static_cast<std::size_t>(medium.band_count()), [&](std::size_t b) {

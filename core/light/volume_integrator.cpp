@@ -51,7 +51,7 @@ void ScatterNodes::look_up(const ConcentrationProfile& profile) {
 
 void ScatterNodes::evaluate_phases(const PhaseTable& table, std::size_t phases) {
     phase.resize(size() * phases);
-    table.evaluate(half_tangent, phase);
+    table.eval(half_tangent, phase);
 }
 
 ScatterSum::ScatterSum(const Medium& medium)

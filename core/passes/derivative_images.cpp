@@ -117,9 +117,9 @@ namespace {
 
 /// Hands each contribution to a pixel to the gradients of its part, with the derivative of the
 /// scalar with respect to the contribution's logarithm, the `weighted` radiance.
-class WorthOfTerms final : public ContributionSink {
+class GradientSink final : public ContributionSink {
   public:
-    WorthOfTerms(const PartGradients& gradients, std::size_t bands)
+    GradientSink(const PartGradients& gradients, std::size_t bands)
         : gradients_(gradients), factors_(bands), weighted_(bands) {}
 
     /// Uses only a few of the many contributions on a ray of this pixel, without bias: they are
@@ -225,7 +225,7 @@ void gather(const PixelWeights& weights, std::span<const PartGradients> parts,
     const PixelWindow& window = weights.window;
     std::atomic<int> done = 0;
     parallel_for(parts.size(), [&](std::size_t part) {
-        WorthOfTerms sink(parts[part], weights.bands);
+        GradientSink sink(parts[part], weights.bands);
         for (int y = window.y0 + static_cast<int>(part); y < window.y1;
              y += static_cast<int>(parts.size())) {
             for (int x = window.x0; x < window.x1; ++x) render(x, y, sink);
@@ -239,7 +239,7 @@ void gather(const PixelWeights& weights, std::span<const PartGradients> parts,
 void quadrature_gradient(const PixelRenderer& pixels, const VolumeIntegrator& water,
                          const PixelWeights& weights, const std::optional<Draws>& draws,
                          std::span<const PartGradients> parts, const ProgressCallback& progress) {
-    gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& sink) {
+    gather(weights, parts, progress, [&](int x, int y, GradientSink& sink) {
         PixelView view;
         SurfaceLight light;
         pixels.trace(x, y, view);
@@ -255,7 +255,7 @@ void path_gradient(const PixelRenderer& pixels, const PixelWeights& weights, con
                    std::span<const PartGradients> parts, const ProgressCallback& progress) {
     PathPixels paths(pixels, 0);
     paths.allocate_paths(draws.samples);
-    gather(weights, parts, progress, [&](int x, int y, WorthOfTerms& sink) {
+    gather(weights, parts, progress, [&](int x, int y, GradientSink& sink) {
         PixelResult result;
         PixelView view;
         pixels.trace(x, y, view);

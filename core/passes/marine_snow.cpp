@@ -130,7 +130,7 @@ void check_rest(const SnowDesc& snow, const Medium& water, const Spectrum& b) {
         const double psi = std::numbers::pi * i / k_steps;
         Spectrum beta;
         for (std::size_t m = 0; m < water.phase_functions.size(); ++m)
-            beta += water.uniform.scattering[m] * water.phase_functions[m]->evaluate(psi);
+            beta += water.uniform.scattering[m] * water.phase_functions[m]->eval(psi);
         for (std::size_t band = 0; band < water.wavelengths_nm.size(); ++band) {
             const double own = b[band] * LambertSphere::at(psi);
             if (own <= beta[band] * (1 + k_rounding)) continue;

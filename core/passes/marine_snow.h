@@ -91,8 +91,8 @@ class SnowField {
 /// cos psi) (Lambert 1760; Schönberg 1929).
 class LambertSphere final : public PhaseFunction {
   public:
-    using PhaseFunction::evaluate;
-    void evaluate(std::span<const double> psi, std::span<double> p) const override {
+    using PhaseFunction::eval;
+    void eval(std::span<const double> psi, std::span<double> p) const override {
         for (std::size_t i = 0; i < psi.size(); ++i) p[i] = at(psi[i]);
     }
     std::string description() const override { return "diffuse spheres"; }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
 #include "core/base/parallel.h"
@@ -14,34 +15,31 @@ namespace uw {
 
 namespace {
 
-void store_vector(double x, double y, double z, std::span<float> channels) {
-    channels[0] = static_cast<float>(x);
-    channels[1] = static_cast<float>(y);
-    channels[2] = static_cast<float>(z);
+/// Stores a number, or one for each channel, times `factor`.
+template <class Values>
+void store(const Values& values, std::span<float> channels, double factor = 1) {
+    if constexpr (std::is_arithmetic_v<Values>)
+        channels[0] = static_cast<float>(factor * values);
+    else
+        for (std::size_t i = 0; i < channels.size(); ++i)
+            channels[i] = static_cast<float>(factor * values[static_cast<int>(i)]);
 }
 
-/// Stores values without a factor, one per band.
-template <Spectrum PixelResult::*values>
-void fill_spectrum(const PixelResult& pixel, std::span<float> channels) {
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>((pixel.*values)[b]);
+/// Stores values without a factor.
+template <auto values>
+void fill(const PixelResult& pixel, std::span<float> channels) {
+    store(pixel.*values, channels);
+}
+
+template <auto values>
+void fill_from_hit(const PixelResult& pixel, std::span<float> channels) {
+    store(pixel.hit.*values, channels);
 }
 
 /// Stores radiance, which images contain multiplied by the pixel's factor.
-template <Spectrum PixelResult::*values>
+template <auto values>
 void fill_radiance(const PixelResult& pixel, std::span<float> channels) {
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>(pixel.pixel_factor * (pixel.*values)[b]);
-}
-
-template <double PixelResult::*value>
-void fill_number(const PixelResult& pixel, std::span<float> channels) {
-    channels[0] = static_cast<float>(pixel.*value);
-}
-
-template <std::array<double, 2> PixelResult::*values>
-void fill_pair(const PixelResult& pixel, std::span<float> channels) {
-    for (std::size_t i = 0; i < 2; ++i) channels[i] = static_cast<float>((pixel.*values)[i]);
+    store(pixel.*values, channels, pixel.pixel_factor);
 }
 
 /// Stores the sum of `multiple_volume` and `multiple_surface`, each rounded to float before the
@@ -66,27 +64,6 @@ void fill_total(const PixelResult& pixel, std::span<float> channels) {
                           static_cast<float>(factor * pixel.snow[b]);
         channels[b] = std::max(sum, 0.0F);
     }
-}
-
-void fill_albedo(const PixelResult& pixel, std::span<float> channels) {
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>(pixel.hit.reflectance[b]);
-}
-
-void fill_normal(const PixelResult& pixel, std::span<float> channels) {
-    store_vector(pixel.hit.normal.x, pixel.hit.normal.y, pixel.hit.normal.z, channels);
-}
-
-void fill_position(const PixelResult& pixel, std::span<float> channels) {
-    store_vector(pixel.hit.position.x, pixel.hit.position.y, pixel.hit.position.z, channels);
-}
-
-void fill_id(const PixelResult& pixel, std::span<float> channels) {
-    channels[0] = static_cast<float>(pixel.hit.object_id);
-}
-
-void fill_material(const PixelResult& pixel, std::span<float> channels) {
-    channels[0] = static_cast<float>(pixel.hit.material_id);
 }
 
 template <float PixelResult::SeenSurface::*id>
@@ -118,30 +95,50 @@ constexpr std::array<LayerFill, k_layer_count> k_fills{{
     {Layer::multiple_volume, fill_radiance<&PixelResult::multiple_volume>},
     {Layer::multiple_surface, fill_radiance<&PixelResult::multiple_surface>},
     {Layer::snow, fill_radiance<&PixelResult::snow>},
-    {Layer::error, fill_spectrum<&PixelResult::error>},
-    {Layer::irradiance, fill_spectrum<&PixelResult::irradiance>},
-    {Layer::exitance, fill_spectrum<&PixelResult::exitance>},
-    {Layer::lit, fill_number<&PixelResult::lit>},
+    {Layer::error, fill<&PixelResult::error>},
+    {Layer::irradiance, fill<&PixelResult::irradiance>},
+    {Layer::exitance, fill<&PixelResult::exitance>},
+    {Layer::lit, fill<&PixelResult::lit>},
     {Layer::clean, fill_radiance<&PixelResult::clean>},
-    {Layer::transmittance, fill_spectrum<&PixelResult::transmittance>},
-    {Layer::albedo, fill_albedo},
-    {Layer::depth, fill_number<&PixelResult::depth_z>},
-    {Layer::range, fill_number<&PixelResult::range>},
-    {Layer::path, fill_number<&PixelResult::path>},
-    {Layer::normal, fill_normal},
-    {Layer::position, fill_position},
-    {Layer::id, fill_id},
-    {Layer::material, fill_material},
+    {Layer::transmittance, fill<&PixelResult::transmittance>},
+    {Layer::albedo, fill_from_hit<&SurfaceHit::reflectance>},
+    {Layer::depth, fill<&PixelResult::depth_z>},
+    {Layer::range, fill<&PixelResult::range>},
+    {Layer::path, fill<&PixelResult::path>},
+    {Layer::normal, fill_from_hit<&SurfaceHit::normal>},
+    {Layer::position, fill_from_hit<&SurfaceHit::position>},
+    {Layer::id, fill_from_hit<&SurfaceHit::object_id>},
+    {Layer::material, fill_from_hit<&SurfaceHit::material_id>},
     {Layer::crypto_object, fill_mattes<&PixelResult::SeenSurface::object>},
     {Layer::crypto_material, fill_mattes<&PixelResult::SeenSurface::material>},
     {Layer::sensor, keep},
-    {Layer::flow, fill_pair<&PixelResult::flow>},
-    {Layer::flow_back, fill_pair<&PixelResult::flow_back>},
-    {Layer::flow_occluded, fill_number<&PixelResult::flow_occluded>},
-    {Layer::disparity, fill_pair<&PixelResult::disparity>},
-    {Layer::disparity_occluded, fill_number<&PixelResult::disparity_occluded>},
+    {Layer::flow, fill<&PixelResult::flow>},
+    {Layer::flow_back, fill<&PixelResult::flow_back>},
+    {Layer::flow_occluded, fill<&PixelResult::flow_occluded>},
+    {Layer::disparity, fill<&PixelResult::disparity>},
+    {Layer::disparity_occluded, fill<&PixelResult::disparity_occluded>},
 }};
 static_assert(has_every_layer(k_fills));
+
+/// The indices of the channels of the groups that `is_wanted` selects.
+template <class Wanted>
+std::vector<std::size_t> channels_where(const LayerPlan& plan, const Wanted& is_wanted) {
+    std::vector<std::size_t> channels;
+    for (const ChannelGroup& group : plan.groups())
+        if (is_wanted(group))
+            for (std::size_t i = 0; i < group.size; ++i) channels.push_back(group.first + i);
+    return channels;
+}
+
+/// Calls `change(x, y, channels)` for every pixel of a film.
+template <class Change>
+void for_each_pixel(Film& film, const Change& change) {
+    const PixelWindow& window = film.window();
+    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
+        const int y = window.y0 + static_cast<int>(line);
+        for (int x = window.x0; x < window.x1; ++x) change(x, y, film.pixel(x, y));
+    });
+}
 
 void store_colour(std::span<const float> total, const BandColour& colour,
                   std::span<float> channels) {
@@ -156,11 +153,6 @@ void store_colour(const PixelResult& pixel, std::size_t bands, const BandColour&
     const std::span<float> total = std::span(rounded).first(bands);
     fill_total(pixel, total);
     store_colour(total, colour, channels);
-}
-
-void store_radiance(const Spectrum& radiance, double factor, std::span<float> channels) {
-    for (std::size_t b = 0; b < channels.size(); ++b)
-        channels[b] = static_cast<float>(factor * radiance[b]);
 }
 
 void add_channels(std::span<float> sum, std::span<const float> more) {
@@ -257,19 +249,20 @@ void store_pixel(const PixelResult& pixel, const LayerPlan& plan, const BandColo
     store_colour(pixel, plan.band_count(), colour, channels);
     channels[k_alpha] = static_cast<float>(pixel.alpha);
     for (const LayerFill& line : k_fills) store_layer(line, pixel, plan, channels);
+    const auto store_light = [&](const Spectrum& radiance, std::span<float> own) {
+        store(radiance, own, pixel.pixel_factor);
+    };
     for (std::size_t j = 0; j < pixel.lamps.size(); ++j)
-        store_radiance(pixel.lamps[j], pixel.pixel_factor, plan.lamp_channels(j, channels));
+        store_light(pixel.lamps[j], plan.lamp_channels(j, channels));
     for (std::size_t order = 0; order < plan.order_count(); ++order) {
-        store_radiance(pixel.orders[order], pixel.pixel_factor,
-                       plan.order_channels(order, channels));
-        store_radiance(pixel.reflections[order], pixel.pixel_factor,
-                       plan.reflection_channels(order, channels));
+        store_light(pixel.orders[order], plan.order_channels(order, channels));
+        store_light(pixel.reflections[order], plan.reflection_channels(order, channels));
     }
 }
 
 void store_truth(const PixelResult& pixel, const LayerPlan& plan, std::span<float> channels) {
     for (const LayerFill& line : k_fills)
-        if (!kind_of(line.layer).of_exposure()) store_layer(line, pixel, plan, channels);
+        if (!is_of_exposure(kind_of(line.layer).content)) store_layer(line, pixel, plan, channels);
 }
 
 void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
@@ -277,19 +270,9 @@ void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
     thread_local std::vector<float> fresh;
     fresh.resize(channels.size());
     store_pixel(pixel, plan, colour, fresh);
-    const auto merge = [&](const auto& channels_in) {
-        mix_channels(channels_in(channels), channels_in(std::span(fresh)), weight);
-    };
-    merge([](std::span<float> all) { return all.first(k_alpha + 1); });
-    for (const LayerKind& kind : k_layers)
-        if (kind.content == LayerContent::light && plan.has(kind.layer))
-            merge([&](std::span<float> all) { return plan.channels(kind.layer, all); });
-    for (std::size_t j = 0; j < pixel.lamps.size(); ++j)
-        merge([&](std::span<float> all) { return plan.lamp_channels(j, all); });
-    for (std::size_t order = 0; order < plan.order_count(); ++order) {
-        merge([&](std::span<float> all) { return plan.order_channels(order, all); });
-        merge([&](std::span<float> all) { return plan.reflection_channels(order, all); });
-    }
+    for (const ChannelGroup& group : plan.groups())
+        if (group.content == LayerContent::light || group.first == k_alpha)
+            mix_channels(group.of(channels), group.of(fresh), weight);
     restore_sums(plan, colour, channels);
 }
 
@@ -322,87 +305,42 @@ void add_forward_scatter_of_lamp(const PixelResult& pixel, const LayerPlan& plan
 
 void take_bands(const Film& from, std::span<const std::size_t> bands, const LayerPlan& plan,
                 Film& film) {
-    // The channel of band 0 of every layer that has one channel per band.
-    std::vector<std::size_t> firsts;
-    std::vector<float> pixel(film.channel_names().size());
-    const auto add = [&](std::span<const float> own) {
-        if (!own.empty()) firsts.push_back(static_cast<std::size_t>(own.data() - pixel.data()));
-    };
-    for (const LayerKind& kind : k_layers)
-        if (kind.of_exposure() && kind.content != LayerContent::matte && kind.suffixes.empty() &&
-            plan.has(kind.layer))
-            add(plan.channels(kind.layer, pixel));
-    for (std::size_t lamp = 0; lamp < plan.lamp_count(); ++lamp)
-        add(plan.lamp_channels(lamp, pixel));
-    for (std::size_t order = 0; order < plan.order_count(); ++order) {
-        add(plan.order_channels(order, pixel));
-        add(plan.reflection_channels(order, pixel));
-    }
-    const PixelWindow& window = film.window();
-    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
-        const int y = window.y0 + static_cast<int>(line);
-        for (int x = window.x0; x < window.x1; ++x) {
-            const std::span<const float> more = from.pixel(x, y);
-            const std::span<float> own = film.pixel(x, y);
-            for (const std::size_t first : firsts)
-                for (const std::size_t band : bands) own[first + band] = more[first + band];
-            for (const std::size_t channel : {k_red, k_green, k_blue})
-                own[channel] += more[channel];
-            if (from.shows_lamp(x, y)) film.mark_lamp(x, y);
-        }
+    std::vector<std::size_t> channels;
+    for (const ChannelGroup& group : plan.groups())
+        if (group.is_by_band && is_of_exposure(group.content))
+            for (const std::size_t band : bands) channels.push_back(group.first + band);
+    for_each_pixel(film, [&](int x, int y, std::span<float> own) {
+        const std::span<const float> more = from.pixel(x, y);
+        for (const std::size_t channel : channels) own[channel] = more[channel];
+        for (const std::size_t channel : {k_red, k_green, k_blue}) own[channel] += more[channel];
+        if (from.shows_lamp(x, y)) film.mark_lamp(x, y);
     });
 }
 
 void add_mirrored(const Film& mirrored, const LayerPlan& plan, const BandColour& colour,
                   Film& film) {
-    // The channels of light: all but coverage and those of layers with other content.
-    std::vector<std::size_t> channels;
-    std::vector<bool> is_light(film.channel_names().size(), true);
-    is_light[k_alpha] = false;
-    std::vector<float> place(is_light.size());
-    for (const LayerKind& kind : k_layers) {
-        if (kind.content == LayerContent::light || !plan.has(kind.layer)) continue;
-        for (const float& value : plan.channels(kind.layer, place))
-            is_light[static_cast<std::size_t>(&value - place.data())] = false;
-    }
-    for (std::size_t channel = 0; channel < is_light.size(); ++channel)
-        if (is_light[channel]) channels.push_back(channel);
-    const PixelWindow& window = film.window();
-    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
-        const int y = window.y0 + static_cast<int>(line);
-        for (int x = window.x0; x < window.x1; ++x) {
-            const std::span<const float> more = mirrored.pixel(x, y);
-            const std::span<float> own = film.pixel(x, y);
-            if (more[k_alpha] == 0) continue;
-            for (const std::size_t channel : channels) own[channel] += more[channel];
-            if (plan.has(Layer::error)) {
-                const auto first = static_cast<std::size_t>(plan.first_channel(Layer::error));
-                for (std::size_t b = first; b < first + plan.band_count(); ++b)
-                    own[b] = std::hypot(own[b], more[b]);
-            }
-            restore_sums(plan, colour, own);
-            if (mirrored.shows_lamp(x, y)) film.mark_lamp(x, y);
-        }
+    const std::vector<std::size_t> channels = channels_where(
+        plan, [](const ChannelGroup& group) { return group.content == LayerContent::light; });
+    const std::vector<std::size_t> errors =
+        channels_where(plan, [](const ChannelGroup& group) { return group.layer == Layer::error; });
+    for_each_pixel(film, [&](int x, int y, std::span<float> own) {
+        const std::span<const float> more = mirrored.pixel(x, y);
+        if (more[k_alpha] == 0) return;
+        for (const std::size_t channel : channels) own[channel] += more[channel];
+        for (const std::size_t channel : errors)
+            own[channel] = std::hypot(own[channel], more[channel]);
+        restore_sums(plan, colour, own);
+        if (mirrored.shows_lamp(x, y)) film.mark_lamp(x, y);
     });
 }
 
 ExposureMean::ExposureMean(const LayerPlan& plan, const BandColour& colour, Errors errors,
                            Film& mean)
     : plan_(plan), colour_(colour), errors_(errors), mean_(mean) {
-    // Lamps and orders follow the layers: all channels are means, except those of the following
-    // layers.
-    std::vector<bool> is_mean(mean.channel_names().size(), true);
-    std::vector<float> place(is_mean.size());
-    for (const LayerKind& kind : k_layers) {
-        const bool is_plain = kind.of_exposure() && kind.content != LayerContent::matte &&
-                              kind.layer != Layer::error && kind.layer != Layer::transmittance;
-        if (is_plain || !plan.has(kind.layer)) continue;
-        const std::span<float> own = plan.channels(kind.layer, place);
-        const auto first = static_cast<std::size_t>(own.data() - place.data());
-        std::fill_n(is_mean.begin() + static_cast<std::ptrdiff_t>(first), own.size(), false);
-    }
-    for (std::size_t channel = 0; channel < is_mean.size(); ++channel)
-        if (is_mean[channel]) channels_.push_back(channel);
+    channels_ = channels_where(plan, [](const ChannelGroup& group) {
+        return is_of_exposure(group.content) && group.content != LayerContent::matte &&
+               group.layer != Layer::error && group.layer != Layer::transmittance;
+    });
     fractions_.assign(static_cast<std::size_t>(mean.window().height()), 0.0F);
     if (plan.has(Layer::transmittance))
         on_surface_.assign(mean.window().width(), mean.window().height());
@@ -459,15 +397,10 @@ void ExposureMean::add_transmittance(std::span<const float> part, float fraction
 }
 
 void ExposureMean::finish() {
-    const PixelWindow& window = mean_.window();
-    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
-        const int y = window.y0 + static_cast<int>(line);
-        for (int x = window.x0; x < window.x1; ++x) {
-            const std::span<float> pixel = mean_.pixel(x, y);
-            if (plan_.has(Layer::error) && errors_ == Errors::independent)
-                for (float& value : plan_.channels(Layer::error, pixel)) value = std::sqrt(value);
-            restore_sums(plan_, colour_, pixel);
-        }
+    for_each_pixel(mean_, [&](int, int, std::span<float> pixel) {
+        if (plan_.has(Layer::error) && errors_ == Errors::independent)
+            for (float& value : plan_.channels(Layer::error, pixel)) value = std::sqrt(value);
+        restore_sums(plan_, colour_, pixel);
     });
 }
 

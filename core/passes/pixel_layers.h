@@ -91,7 +91,7 @@ void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
                  const BandColour& colour, std::span<float> channels);
 
 /// Writes ground truth, which is that of the middle of an exposure: the layers that are not
-/// LayerKind::of_exposure.
+/// is_of_exposure.
 void store_truth(const PixelResult& pixel, const LayerPlan& plan, std::span<float> channels);
 
 /// Writes the changes by forward scatter into channels that store_pixel filled, except those of the

@@ -153,11 +153,15 @@ PixelRenderer::PixelRenderer(const RaySource& rays, const LitScene& scene,
 }
 
 void PixelRenderer::trace(int x, int y, PixelView& view) const {
+    trace_center(x, y, view);
+    add_samples(x, y, view);
+}
+
+void PixelRenderer::trace_center(int x, int y, PixelView& view) const {
     begin_view(x, y, view);
     view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
     finish_ground_truth(view);
     find_matches(matchers_, std::span(&view, 1));
-    add_samples(x, y, view);
 }
 
 void PixelRenderer::trace(const PixelWindow& window, Grid2D<PixelView>& views) const {
@@ -355,10 +359,7 @@ void PixelRenderer::store_truth(const PixelView& view, PixelResult& result) cons
 void PixelRenderer::find_truth(int x, int y, PixelResult& result) const {
     PixelView view;
     result.reset(0);
-    begin_view(x, y, view);
-    view.has_hit = view.ray && scene_.surfaces->closest_hit(*view.ray, k_far, view.hit);
-    finish_ground_truth(view);
-    find_matches(matchers_, std::span(&view, 1));
+    trace_center(x, y, view);
     store_truth(view, result);
 }
 

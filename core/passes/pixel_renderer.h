@@ -140,6 +140,8 @@ class PixelRenderer {
     void add_mattes(const PixelView& view, PixelResult& result) const;
     void add_lamp(const SeenLamp& lamp, PixelResult& result) const;
     void add_water(std::span<const double> in_scatter, PixelResult& result) const;
+    // Finds the ground truth of a view.
+    void trace_center(int x, int y, PixelView& view) const;
     // Begins a view with the ray through the pixel's centre.
     void begin_view(int x, int y, PixelView& view) const;
     // Sets the ground truth from the ray's hit, if there is one.

@@ -63,7 +63,7 @@ std::optional<Vector3> sample_phase_function(const ScatteringTables& tables,
     for (std::size_t band = 0; band < throughput.size(); ++band)
         throughput[band] *= b[band] / chosen.probability;
     const HalfTangentDensity& phase = tables.directions[chosen.index];
-    return direction_around(direction, phase.invert(v * phase.mass()), azimuth);
+    return direction_around(direction, phase.sample(v), azimuth);
 }
 
 DirectionSampler::DirectionSampler(const GuidingTables& tables, const Point3& x,
@@ -157,7 +157,7 @@ double DirectionSampler::sample_candidates(PathRandom& random,
                     lobe = &field.phase();
                 }
             }
-            candidate.direction = direction_around(guide.direction, lobe->invert(u * lobe->mass()),
+            candidate.direction = direction_around(guide.direction, lobe->sample(u),
                                                    wrapped(azimuth_guide + k * k_direction.golden));
         } else {
             const int i = k - of_guides;
@@ -192,9 +192,8 @@ double DirectionSampler::guide_pdf(const Vector3& direction) const {
         const GuidingDistribution::Guide& guide = guides_->all()[j];
         const HalfTangentDensity& lobe = field.lobe(guide.place);
         const double h = half_tangent_between(guide.direction, direction);
-        double density = lobe.density(h) / lobe.mass();
-        if (guide.scattered_once > 0)
-            density = 0.5 * (density + field.phase().density(h) / field.phase().mass());
+        double density = lobe.pdf(h);
+        if (guide.scattered_once > 0) density = 0.5 * (density + field.phase().pdf(h));
         sum += (cumulative[j] - before) * density * per_solid_angle(h);
         before = cumulative[j];
     }
@@ -217,7 +216,7 @@ Vector3 DirectionSampler::sample_local(double u, double v, double azimuth) const
     if (!reflection_) {
         const HalfTangentDensity& phase =
             tables_->scattering.directions[choose(scratch_->phase_cumulative, u).index];
-        return direction_around(incoming_, phase.invert(v * phase.mass()), azimuth);
+        return direction_around(incoming_, phase.sample(v), azimuth);
     }
     const Vector3& normal = scratch_->surface.hit.normal;
     if (!reflection_->is_glossy() || u >= k_direction.specular_probability)

@@ -161,8 +161,7 @@ void LampRadianceTable::Solver::make_matrix(const HalfTangentDensity& direction)
         const double psi = 2 * std::atan(angles_[i]);
         for (int a = 0; a < k_polar; ++a) {
             const double beyond = 1 - (a + 0.5) / k_polar, probability = 2 * beyond / k_polar;
-            const double theta =
-                2 * std::atan(direction.invert((1 - beyond * beyond) * direction.mass()));
+            const double theta = 2 * std::atan(direction.sample(1 - beyond * beyond));
             for (int b = 0; b < k_azimuths; ++b) {
                 const double phi = std::numbers::pi * (b + 0.5) / k_azimuths;
                 const double along = std::cos(psi) * std::cos(theta) +

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/paths/half_tangent_density.h"
+#include "core/light/half_tangent_density.h"
 
 namespace uw {
 

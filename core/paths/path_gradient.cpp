@@ -98,7 +98,7 @@ void PathGradient::add_scattering(const Point3& x, const Vector3& in, const Vect
     const Medium& medium = *tables_.scene.medium;
     const double h = half_tangent_between(in, out);
     p_.resize(medium.phase_functions.size());
-    tables_.phases.evaluate(std::span(&h, 1), p_);
+    tables_.phases.eval(std::span(&h, 1), p_);
     concentration_.resize(constituents_);
     per_unit_.resize(constituents_);
     tables_.scene.field->sample(x, concentration_);

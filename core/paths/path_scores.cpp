@@ -262,7 +262,7 @@ void PathScores::eval(const Side& side, const Vertex& vertex, const Vector3& out
     const Medium& medium = *side.scene.medium;
     p_.resize(medium.phase_functions.size());
     const double h = half_tangent_between(vertex.in, out);
-    side.phases.evaluate(std::span(&h, 1), p_);
+    side.phases.eval(std::span(&h, 1), p_);
     const std::span<const double> concentration = concentrations(side, vertex);
     for (std::size_t b = 0; b < bands; ++b) {
         double beta = 0;

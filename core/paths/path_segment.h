@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -10,22 +9,11 @@
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
 #include "core/geometry/surfaces.h"
+#include "core/light/half_tangent_density.h"
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
 
 namespace uw {
-
-/// Two unit vectors that are perpendicular to a third one, and to each other (Duff et al. 2017).
-struct Tangents {
-    Vector3 u, v;
-
-    explicit Tangents(const Vector3& axis) {
-        const double sign = std::copysign(1.0, axis.z);
-        const double a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
-        u = {1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x};
-        v = {b, sign + axis.y * axis.y * a, -axis.y};
-    }
-};
 
 /// In place of a lamp's index: light emitted by surfaces.
 inline constexpr std::size_t k_no_lamp = std::numeric_limits<std::size_t>::max();

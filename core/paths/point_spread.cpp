@@ -35,7 +35,7 @@ class PhaseTransfer {
         for (int step = 0; step <= k_steps; ++step) {
             // Where p is linear in psi^2, its mean over the solid angle is at half of psi^2.
             const double middle = step == 0 ? std::sqrt(0.5) * end : 0.5 * (begin + end);
-            const double p = phase.evaluate(middle);
+            const double p = phase.eval(middle);
             for (std::size_t i = 0; i < values_.size(); ++i) {
                 const double k = PointSpread::frequency(i);
                 values_[i] += 2 * std::numbers::pi * p / k *

@@ -36,17 +36,12 @@ ScatteringTables::ScatteringTables(const Medium& medium,
                                    const LampRadianceTable::Fineness& fineness)
     : phases(medium), phase_fractions(typical_phase_fractions(medium)), fineness_(fineness) {
     const std::span<const double> nodes = HalfTangentDensity::nodes();
-    const std::size_t count = medium.phase_functions.size();
-    std::vector<double> p(count * nodes.size());
-    phases.evaluate(nodes, p);
-    for (std::size_t m = 0; m < count; ++m) {
-        std::vector<double> direction, line;
-        for (std::size_t i = 0; i < nodes.size(); ++i) {
-            const double h = nodes[i], dpsi = 2 / (1 + h * h), sine = h * dpsi;
-            line.push_back(p[m * nodes.size() + i] * dpsi);
-            direction.push_back(2 * std::numbers::pi * line.back() * sine);
-        }
-        directions.emplace_back(direction);
+    std::vector<double> p(medium.phase_functions.size() * nodes.size()), line(nodes.size());
+    phases.eval(nodes, p);
+    for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
+        directions.push_back(medium.phase_functions[m]->make_sampler());
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            line[i] = p[m * nodes.size() + i] * (2 / (1 + nodes[i] * nodes[i]));
         lines.emplace_back(line);
     }
     const auto include = [&](const OpticalCoefficients& coefficients) {

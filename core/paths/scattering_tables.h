@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/light/half_tangent_density.h"
 #include "core/light/medium.h"
-#include "core/paths/half_tangent_density.h"
 #include "core/paths/lamp_radiance_table.h"
 
 namespace uw {
@@ -20,7 +20,7 @@ struct ScatteringTables {
     std::vector<double> phase_fractions;
 
     // One per phase function m of the medium:
-    /// p_m(psi) over directions, for sampling the direction of a scattering.
+    /// PhaseFunction::make_sampler: for sampling the direction of a scattering.
     std::vector<HalfTangentDensity> directions;
     /// p_m(psi) over angles, for sampling where on a line a lamp's light is scattered along it: ds
     /// / R^2 = dpsi / D with D the lamp's distance from the line.
@@ -42,7 +42,7 @@ struct ScatteringTables {
     std::size_t phase_count() const { return lines.size(); }
     /// All p_m at `half_tangent` [1/sr].
     void phase(double half_tangent, std::span<double> p) const {
-        phases.evaluate(std::span(&half_tangent, 1), p);
+        phases.eval(std::span(&half_tangent, 1), p);
     }
 
   private:

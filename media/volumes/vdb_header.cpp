@@ -60,12 +60,6 @@ std::string VdbHeader::describe_grids() const {
     return list;
 }
 
-namespace {
-
-constexpr std::int64_t k_window_bytes = 1 << 16;
-
-}  // namespace
-
 ByteReader::ByteReader(const std::filesystem::path& file, const SourceLocation& where)
     : file_(file),
       where_(where),
@@ -96,6 +90,7 @@ void ByteReader::read(char* to, std::size_t bytes) {
     if (wanted > size_ - position_) fail_damaged();
     const std::int64_t window_end = window_begin_ + static_cast<std::int64_t>(window_.size());
     if (position_ < window_begin_ || position_ + wanted > window_end) {
+        constexpr std::int64_t k_window_bytes = 1 << 16;
         const std::int64_t length = std::min(std::max(k_window_bytes, wanted), size_ - position_);
         window_.resize(static_cast<std::size_t>(length));
         stream_.seekg(position_);
@@ -115,6 +110,13 @@ std::string ByteReader::text(std::size_t size) {
 }
 
 namespace {
+
+/// Names come from the file and appear in one-line messages.
+std::string replace_controls(std::string text) {
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+    return text;
+}
 
 // "NanoVDB0" up to library 32.5, then "NanoVDB1" for grids and "NanoVDB2" for files.
 constexpr std::int64_t k_magic_0 = 0x304244566f6e614e, k_magic_1 = 0x314244566f6e614e,
@@ -157,14 +159,6 @@ void set_nano_type(GridSummary& grid, std::uint32_t type, std::uint32_t grid_cla
         grid.tree_type = "Tree_" + grid.value_type + "_5_4_3";
 }
 
-std::string name_of(ByteReader& in, std::uint32_t bytes) {
-    std::string name = in.text(bytes);
-    name.resize(std::min(name.size(), name.find('\0')));
-    std::ranges::replace_if(
-        name, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    return name;
-}
-
 GridSummary read_nano_grid(ByteReader& in, std::uint16_t codec) {
     const auto metadata = in.get<NanoMetadata>();
     const auto fits = [&](std::uint64_t bytes) {
@@ -172,10 +166,11 @@ GridSummary read_nano_grid(ByteReader& in, std::uint16_t codec) {
     };
     constexpr std::uint64_t k_max_packing = 4096;  // no codec compresses better than that
     if (!fits(metadata.stored_bytes) || metadata.grid_bytes / k_max_packing > metadata.stored_bytes)
-        in.fail("is truncated or damaged; copy or export it again");
+        in.fail_damaged();
     if (codec == 0 && metadata.grid_bytes != metadata.stored_bytes) in.fail_damaged();
     GridSummary grid;
-    grid.base_name = name_of(in, metadata.name_bytes);
+    const std::string name = in.text(metadata.name_bytes);
+    grid.base_name = replace_controls(name.substr(0, name.find('\0')));
     grid.name = grid.unique_name = grid.base_name;
     set_nano_type(grid, metadata.type, metadata.grid_class);
     grid.compression = codec == 2 ? 4U : codec;  // as in VDB files
@@ -245,13 +240,6 @@ VdbHeader read_nvdb_header(ByteReader& in, const std::filesystem::path& file) {
 constexpr std::int64_t k_magic = 0x56444220;
 constexpr std::uint32_t k_oldest_version = 220, k_newest_version = 224;
 
-/// Names come from the file and appear in one-line messages.
-std::string replace_controls(std::string text) {
-    std::ranges::replace_if(
-        text, [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-    return text;
-}
-
 /// A metadata map: strings, 64-bit integers and 3-vectors by name; for other types only the name.
 struct Metadata {
     std::map<std::string, std::string> strings;
@@ -284,6 +272,12 @@ Metadata read_metadata(ByteReader& in) {
         }
     }
     return metadata;
+}
+
+template <class Value>
+std::optional<Value> value_of(const std::map<std::string, Value>& values, const char* name) {
+    const auto found = values.find(name);
+    return found == values.end() ? std::nullopt : std::optional(found->second);
 }
 
 bool take_suffix(std::string& text, const std::string& suffix) {
@@ -320,28 +314,24 @@ GridSummary read_grid(ByteReader& in, const VdbHeader& header) {
     const auto grid_offset = in.get<std::int64_t>();
     grid.blocks_offset = in.get<std::int64_t>();
     const auto end = in.get<std::int64_t>();
-    const std::int64_t next_descriptor = end;
     if (end < in.position() || end > in.size() || grid_offset < in.position() || grid_offset > end)
-        in.fail("is truncated or damaged; copy or export it again");
+        in.fail_damaged();
 
     in.seek(grid_offset);
     grid.compression = header.version >= 222 ? in.get<std::uint32_t>() : 0;
     const Metadata metadata = read_metadata(in);
-    if (const auto it = metadata.strings.find("class"); it != metadata.strings.end())
-        grid.grid_class = replace_controls(it->second);
-    if (const auto it = metadata.integers.find("file_voxel_count"); it != metadata.integers.end())
-        grid.active_voxels = it->second;
-    const auto low = metadata.vectors.find("file_bbox_min");
-    const auto high = metadata.vectors.find("file_bbox_max");
-    if (low != metadata.vectors.end() && high != metadata.vectors.end())
-        grid.active_box = IndexBox{low->second, high->second};
-    if (const auto it = metadata.vectors.find("file_base_resolution"); it != metadata.vectors.end())
-        grid.base_resolution = it->second;
+    if (const auto grid_class = value_of(metadata.strings, "class"))
+        grid.grid_class = replace_controls(*grid_class);
+    grid.active_voxels = value_of(metadata.integers, "file_voxel_count");
+    const auto low = value_of(metadata.vectors, "file_bbox_min");
+    const auto high = value_of(metadata.vectors, "file_bbox_max");
+    if (low && high) grid.active_box = IndexBox{*low, *high};
+    grid.base_resolution = value_of(metadata.vectors, "file_base_resolution");
     grid.from_embergen = metadata.has("embergen_version");
     grid.transform_offset = in.position();
     grid.map_type = replace_controls(in.text());
     if (grid.map_type == "UniformScaleMap") grid.voxel_edge = in.get<double>();
-    in.seek(next_descriptor);
+    in.seek(end);
     return grid;
 }
 

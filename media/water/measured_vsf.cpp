@@ -12,7 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "media/water/phase_functions.h"
+#include "media/water/molecular_phase.h"
 #include "media/water/water_types.h"
 
 namespace uw {

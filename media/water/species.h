@@ -9,7 +9,7 @@
 #include "core/base/progress.h"
 #include "core/light/medium.h"
 #include "core/scene/water_desc.h"
-#include "media/water/phase_functions.h"
+#include "media/water/tabulated_phase.h"
 
 namespace uw {
 

@@ -495,7 +495,7 @@ std::vector<OpticalCoefficients> coefficients_by_depth(const WaterModel& model) 
 
 namespace {
 
-constexpr double k_min_step_ppm = 1e-6;  // beyond rounding
+constexpr double k_rounding_ppm = 1e-6;
 
 void refuse_other_water(const WaterDesc& water, const std::vector<VolumeDesc>& volumes,
                         bool is_small) {
@@ -525,43 +525,35 @@ void refuse_other_water(const WaterDesc& water, const std::vector<VolumeDesc>& v
         }
 }
 
-/// How far the coefficients are linear from here.
-double linear_step(const WaterDesc& water, double ppm, double preset_ppm) {
-    const bool measured = !water.preset.empty() && !water.absorption;
-    return measured && ppm < preset_ppm - k_min_step_ppm ? preset_ppm - ppm : 1.0;
-}
-
 }  // namespace
 
-ParticleDerivative particle_derivative(const WaterDesc& water,
-                                       const std::vector<VolumeDesc>& volumes,
-                                       WaterParticles particles) {
+Medium with_one_more_ppm(const WaterModel& model, const WaterDesc& water,
+                         const std::vector<VolumeDesc>& volumes, WaterParticles particles) {
     const bool is_small = particles == WaterParticles::small;
     refuse_other_water(water, volumes, is_small);
-    const WaterModel model = build_water_model(water, volumes);
-    const double ppm = is_small ? model.small_ppm : model.large_ppm;
-    double preset_ppm = 0;
-    if (!water.preset.empty()) {
+    const SpeciesDesc species = all_species(water)[water.species.size() + (is_small ? 0 : 1)];
+    bool absorbs = true;
+    if (!water.preset.empty() && !water.absorption) {
         const JerlovPreset& preset = jerlov_preset(water.preset);
-        preset_ppm = is_small ? preset.small_ppm : preset.large_ppm;
+        absorbs = is_small ? model.small_ppm >= preset.small_ppm - k_rounding_ppm
+                           : model.large_ppm >= preset.large_ppm - k_rounding_ppm;
     }
-    const double step = linear_step(water, ppm, preset_ppm);
-    // Both lie above the concentration, which may be 0: then the medium lacks the phase function.
-    const auto with = [&](double more) {
-        WaterDesc changed = water;
-        (is_small ? changed.small_ppm : changed.large_ppm) = ppm + more;
-        return build_water_model(changed, volumes).medium;
-    };
-    const Medium near = with(step / 2);
-    Medium far = with(step);
-    ParticleDerivative result{std::move(far.phase_functions), std::move(far.uniform)};
-    const auto make_difference = [&](Spectrum& value, const Spectrum& from) {
-        value = (value - from) / (step / 2);
-    };
-    make_difference(result.per_ppm.absorption, near.uniform.absorption);
-    for (std::size_t m = 0; m < result.per_ppm.scattering.size(); ++m)
-        make_difference(result.per_ppm.scattering[m], near.uniform.scattering[m]);
-    return result;
+    Medium medium = model.medium;
+    std::vector<Spectrum>& scattering = medium.uniform.scattering;
+    for (std::size_t band = 0; band < water.bands_nm.size(); ++band) {
+        const SpeciesOptics optics = species_optics(species, water.bands_nm[band], water);
+        const auto found = std::ranges::find(medium.phase_functions, optics.phase);
+        const auto phase = static_cast<std::size_t>(found - medium.phase_functions.begin());
+        if (found == medium.phase_functions.end()) {
+            medium.phase_functions.push_back(optics.phase);
+            scattering.emplace_back();
+            for (Constituent& constituent : medium.constituents)
+                constituent.per_unit.scattering.emplace_back();
+        }
+        scattering[phase][band] += optics.scattering;
+        if (absorbs) medium.uniform.absorption[band] += optics.absorption;
+    }
+    return medium;
 }
 
 }  // namespace uw

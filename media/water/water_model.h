@@ -54,21 +54,13 @@ std::vector<OpticalCoefficients> coefficients_by_depth(const WaterModel& model);
 /// The water's own particles (WaterDesc::small_ppm, large_ppm).
 enum class WaterParticles : std::uint8_t { small, large };
 
-/// The derivatives of the water's optical properties by the concentration of its own particles.
-struct ParticleDerivative {
-    /// The phase functions of the water's medium, and the particles' own.
-    std::vector<std::shared_ptr<const PhaseFunction>> phase_functions;
-    /// The derivative of the uniform coefficients by concentration [1/m per ppm]; scattering is
-    /// listed by phase function.
-    OpticalCoefficients per_ppm;
-};
-
-/// The derivative of build_water_model's uniform coefficients, which are linear, by the
-/// concentration of these particles: upwards, where mineral absorption begins at the preset's own.
-/// InputError, as build_water_model; UsageError if the water's scattering is given, so that
-/// it has no particles, or if a grid scatters like the water, whose phase function they change.
-ParticleDerivative particle_derivative(const WaterDesc& water,
-                                       const std::vector<VolumeDesc>& volumes,
-                                       WaterParticles particles);
+/// Returns the medium of `model`, the water that these descriptions say, with one ppm more of these
+/// particles in its uniform part. The change is the derivative by their concentration, in which the
+/// coefficients are linear: upwards, where mineral absorption begins at the preset's own. If the
+/// particles are new to the medium, their phase function follows its own. UsageError if the water's
+/// scattering is given, so that it has no particles, if these change with depth, or if a grid
+/// scatters like the water, whose phase function they change.
+Medium with_one_more_ppm(const WaterModel& model, const WaterDesc& water,
+                         const std::vector<VolumeDesc>& volumes, WaterParticles particles);
 
 }  // namespace uw

@@ -10,8 +10,9 @@
 
 #include "core/base/numerics.h"
 #include "media/water/depth_profile.h"
-#include "media/water/phase_functions.h"
+#include "media/water/molecular_phase.h"
 #include "media/water/species.h"
+#include "media/water/tabulated_phase.h"
 #include "media/water/water_model.h"
 #include "media/water/water_types.h"
 
@@ -36,7 +37,7 @@ double moment(const PhaseFunction& phase, double from, F f) {
         for (int panel = 0; panel < k_panels; ++panel)
             for (const QuadratureNode& node : gauss_legendre(4)) {
                 const double psi = edges[i] + width * (panel + node.position);
-                sum += node.weight * width * phase.evaluate(psi) * f(psi) * std::sin(psi);
+                sum += node.weight * width * phase.eval(psi) * f(psi) * std::sin(psi);
             }
     }
     return 2 * k_pi * sum;
@@ -135,7 +136,7 @@ double CoefficientTable::albedo(std::size_t i) const {
 
 double CoefficientTable::vsf(std::size_t i, std::size_t part, double psi) const {
     const double b = parts[part].b[i];
-    return b > 0 ? b * parts[part].at(i).phase->evaluate(psi) : 0;
+    return b > 0 ? b * parts[part].at(i).phase->eval(psi) : 0;
 }
 
 double CoefficientTable::vsf(std::size_t i, double psi) const {

@@ -9,7 +9,7 @@
 #include "core/base/csv_table.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
-#include "media/water/phase_functions.h"
+#include "media/water/molecular_phase.h"
 
 namespace uw {
 

@@ -92,8 +92,7 @@ HalfTangentDensity density_around_lamps(const ScatteringTables& tables) {
     for (const double h : HalfTangentDensity::nodes()) {
         double value = h > 1 ? 0 : 1 / (octaves * std::max(h, k_min_half_tangent));
         for (std::size_t m = 0; m < tables.phase_count(); ++m)
-            value += tables.phase_fractions[m] * tables.directions[m].density(h) /
-                     tables.directions[m].mass();
+            value += tables.phase_fractions[m] * tables.directions[m].pdf(h);
         values.push_back(value);
     }
     return HalfTangentDensity(values);
@@ -121,7 +120,7 @@ class Directions {
         double target = (choice - uniform) / (1 - uniform) * total_;
         std::size_t i = 0;
         while (i + 1 < beams_.size() && target >= beams_[i].weight) target -= beams_[i++].weight;
-        return direction_around(beams_[i].towards, around_.invert(u * around_.mass()), azimuth);
+        return direction_around(beams_[i].towards, around_.sample(u), azimuth);
     }
 
     /// Returns the pdf of sample() [1/sr].

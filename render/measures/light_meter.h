@@ -6,8 +6,8 @@
 
 #include "core/base/spectrum.h"
 #include "core/base/vector_math.h"
+#include "core/light/half_tangent_density.h"
 #include "core/light/integrator_kind.h"
-#include "core/paths/half_tangent_density.h"
 #include "render/assembled_scene.h"
 
 namespace uw {

@@ -16,7 +16,7 @@
 #include "core/light/submerged.h"
 #include "core/scene/scene_desc.h"
 #include "media/volumes/stratified_field.h"
-#include "media/water/phase_functions.h"
+#include "media/water/tabulated_phase.h"
 #include "render/measures/light_meter.h"
 #include "render/renderer.h"
 #include "render/validation/published_tables.h"

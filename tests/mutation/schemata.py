@@ -14,7 +14,8 @@ AREAS = {
                         "core/passes/mirrored_blur.*", "core/passes/spline_grid.*"],
     "camera": ["camera/*.*"],
     "media/light": ["media/light/*.*"],
-    "phase functions": ["media/water/phase_functions.*", "core/light/medium.*"],
+    "phase functions": ["media/water/*phase*", "media/water/henyey_greenstein.*",
+                        "media/water/fournier_forand.*", "core/light/medium.*"],
 }
 LAYERS = ["core", "media", "camera", "render", "edit", "dataset", "cli"]
 HEADER = "tests/mutation/mutant.h"

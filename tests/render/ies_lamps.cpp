@@ -47,7 +47,7 @@ double in_scatter(const AssembledScene& scene, const Ray& ray, double end) {
         const double psi = std::acos(glm::clamp(cosine, -1.0, 1.0));
         double beta = 0;
         for (std::size_t m = 0; m < medium.phase_functions.size(); ++m)
-            beta += medium.uniform.scattering[m][0] * medium.phase_functions[m]->evaluate(psi);
+            beta += medium.uniform.scattering[m][0] * medium.phase_functions[m]->eval(psi);
         return lamp.axis_intensity()[0] * lamp.relative_intensity(from_lamp) / (r * r) * beta *
                std::exp(-c * (r + s));
     };

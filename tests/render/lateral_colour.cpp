@@ -65,7 +65,7 @@ void expect_bands_of_their_own(const SceneDesc& desc) {
                     EXPECT_EQ(dispersed.lamp(lamp, x, y, band), own.lamp(lamp, x, y, band));
                 for (const LayerKind& kind : k_layers) {
                     if (!plan.has(kind.layer)) continue;
-                    const bool of_band = kind.of_exposure() && kind.suffixes.empty();
+                    const bool of_band = is_of_exposure(kind.content) && kind.suffixes.empty();
                     EXPECT_EQ(
                         dispersed.value(kind.layer, x, y, of_band ? band : 0),
                         (of_band ? own : reference).value(kind.layer, x, y, of_band ? band : 0))

@@ -214,7 +214,7 @@ TEST(PaperOutput, EqualsQuadratureOfItsEquations) {
                 const double r = glm::length(from_lamp);
                 const double psi = std::acos(glm::clamp(glm::dot(from_lamp, -d) / r, -1.0, 1.0));
                 const double beta =
-                    medium.uniform.scattering[0][1] * medium.phase_functions[0]->evaluate(psi);
+                    medium.uniform.scattering[0][1] * medium.phase_functions[0]->eval(psi);
                 return std::exp(-c * (r + z)) * 50 / (r * r) * beta *
                        std::pow((z - k_focal_length) / z, 2);
             };

@@ -34,7 +34,7 @@ Truth quadrature(const Medium& medium, const Point3& lamp, const Vector3& d, int
         const double psi = std::acos(glm::clamp(cosine, -1.0, 1.0));
         double beta = 0;
         for (std::size_t m = 0; m < medium.phase_functions.size(); ++m)
-            beta += medium.uniform.scattering[m][b] * medium.phase_functions[m]->evaluate(psi);
+            beta += medium.uniform.scattering[m][b] * medium.phase_functions[m]->eval(psi);
         return k_lamp_watts_per_sr / (r * r) * beta * std::exp(-c * (r + s));
     };
     // Adaptive Simpson is told where the peak is, and started on pieces.

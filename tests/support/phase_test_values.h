@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/base/csv_table.h"
-#include "core/light/medium.h"
+#include "core/light/phase_function.h"
 
 /// Published values of phase functions, tabulated in tests/data.
 namespace uw::test {
@@ -27,7 +27,7 @@ inline void expect_phase_column(const PhaseFunction& p, const CsvTable& table, c
                                 double scale = 1) {
     const SampledCurve expected = table.curve("angle_deg", column);
     for (std::size_t i = 0; i < expected.x.size(); ++i)
-        EXPECT_NEAR(p.evaluate(expected.x[i] * (std::numbers::pi / 180)) * scale, expected.y[i],
+        EXPECT_NEAR(p.eval(expected.x[i] * (std::numbers::pi / 180)) * scale, expected.y[i],
                     1e-5 * expected.y[i])
             << column << " at " << expected.x[i];
 }

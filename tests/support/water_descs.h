@@ -60,7 +60,7 @@ inline double vsf(const Medium& medium, const OpticalCoefficients& x, std::size_
                   double psi) {
     double beta = 0;
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m)
-        beta += x.scattering[m][band] * medium.phase_functions[m]->evaluate(psi);
+        beta += x.scattering[m][band] * medium.phase_functions[m]->eval(psi);
     return beta;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "media/water/molecular_phase.h"
 #include "tests/support/described_phase.h"
 
 namespace uw::test {
@@ -38,12 +39,12 @@ TEST(PhaseTable, EqualsEachFunctionButForTheCellsInWhichItBends) {
     for (double octave = -20; octave < 13; octave += 0.0137)
         half_tangents.push_back(std::exp2(octave));
     std::vector<double> p(phases * half_tangents.size());
-    table.evaluate(half_tangents, p);
+    table.eval(half_tangents, p);
     for (std::size_t m = 0; m < phases; ++m) {
         const PhaseFunction& phase = *medium.phase_functions[m];
         double worst = 0, worst_at_bends = 0;
         for (std::size_t i = 0; i < half_tangents.size(); ++i) {
-            const double truth = phase.evaluate(2 * std::atan(half_tangents[i]));
+            const double truth = phase.eval(2 * std::atan(half_tangents[i]));
             const double error = std::abs(p[m * half_tangents.size() + i] / truth - 1);
             double& of_kind = bends_near(phase, half_tangents[i]) ? worst_at_bends : worst;
             of_kind = std::max(of_kind, error);
@@ -60,10 +61,10 @@ TEST(PhaseTable, HoldsTheEndsOfTheRange) {
     const PhaseTable table(medium_of({std::make_shared<KopelevichLarge>()}));
     const std::vector<double> ends{0, 1e-30, 1e30, std::numeric_limits<double>::infinity()};
     std::vector<double> p(4);
-    table.evaluate(ends, p);
-    EXPECT_NEAR(p[0], phase.evaluate(0), 1e-4 * p[0]);  // 1e-6 rad from it
+    table.eval(ends, p);
+    EXPECT_NEAR(p[0], phase.eval(0), 1e-4 * p[0]);  // 1e-6 rad from it
     EXPECT_EQ(p[1], p[0]);
-    EXPECT_NEAR(p[2], phase.evaluate(std::numbers::pi), 1e-3 * p[2]);  // 1e-4 rad from it
+    EXPECT_NEAR(p[2], phase.eval(std::numbers::pi), 1e-3 * p[2]);  // 1e-4 rad from it
     EXPECT_EQ(p[3], p[2]);
 }
 
@@ -71,7 +72,7 @@ TEST(PhaseTable, WaterThatScattersNothingHasNone) {
     const PhaseTable table(medium_of({}));
     const std::vector<double> half_tangents{0.0, 1.0};
     std::vector<double> p;
-    table.evaluate(half_tangents, p);
+    table.eval(half_tangents, p);
     EXPECT_TRUE(p.empty());
 }
 

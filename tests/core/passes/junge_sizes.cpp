@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "tests/support/phase_function_laws.h"
+#include "tests/support/adaptive_quadrature.h"
 
 namespace uw {
 namespace {
@@ -17,8 +17,8 @@ constexpr double k_least = 1e-4, k_greatest = 1e-2;
 /// int D^power dD from a to b by quadrature, in ln D.
 double integral(double power, double a, double b) {
     const double greatest = std::max(std::pow(a, power + 1), std::pow(b, power + 1));
-    return test::adaptive_simpson([&](double x) { return std::exp((power + 1) * x); }, std::log(a),
-                                  std::log(b), 1e-9 * greatest);
+    return test::AdaptiveQuadrature::integrate([&](double x) { return std::exp((power + 1) * x); },
+                                               std::log(a), std::log(b), 1e-9 * greatest);
 }
 
 TEST(JungeSizes, SharesAndAreasAreThoseOfThePowerLaw) {

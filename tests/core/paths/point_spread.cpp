@@ -54,7 +54,7 @@ double exponent_of(double depth, double k) {
         double mean = 0;
         for (int j = 0; j < k_places; ++j)
             mean += std::cyl_bessel_j(0.0, k * psi * (j + 0.5) / k_places) / k_places;
-        sum += phase->evaluate(psi) * mean * psi * 2 * root / k_angles;
+        sum += phase->eval(psi) * mean * psi * 2 * root / k_angles;
     }
     return depth * 2 * std::numbers::pi * sum;
 }

@@ -65,15 +65,14 @@ std::vector<PeakedPhase> peaked_phases() {
     const auto table = std::make_shared<const TabulatedPhase>(steep, "steep");
     phases.push_back({table, [table](double psi) {
                           const double even = std::sin(std::min(psi, 1e-6) / 2);
-                          const double core = 4 * pi * even * even * table->evaluate(0);
+                          const double core = 4 * pi * even * even * table->eval(0);
                           if (psi <= 1e-6) return core;
-                          return core +
-                                 adaptive_simpson(
-                                     [&](double u) {
-                                         const double at = std::exp(u);
-                                         return 2 * pi * table->evaluate(at) * std::sin(at) * at;
-                                     },
-                                     std::log(1e-6 * (1 + 1e-12)), std::log(psi), 1e-10);
+                          return core + AdaptiveQuadrature::integrate(
+                                            [&](double u) {
+                                                const double at = std::exp(u);
+                                                return 2 * pi * table->eval(at) * std::sin(at) * at;
+                                            },
+                                            std::log(1e-6 * (1 + 1e-12)), std::log(psi), 1e-10);
                       }});
     return phases;
 }
@@ -98,7 +97,7 @@ TEST(SteepPeaks, TablesContainAllOfTheScattering) {
         EXPECT_NEAR(integral_over_sphere([&](double psi) {
                         const double h = std::tan(psi / 2);
                         double p = 0;
-                        table.evaluate(std::span(&h, 1), std::span(&p, 1));
+                        table.eval(std::span(&h, 1), std::span(&p, 1));
                         return p;
                     }),
                     1, 1e-4);
@@ -130,8 +129,7 @@ TEST(SteepPeaks, DirectionsAreDrawnDownToTheSmallestAngles) {
         for (int i = 0; i < k_draws; ++i) {
             PathRandom random(7, static_cast<std::uint32_t>(i));
             const double u = random.next(), azimuth = random.next();
-            const Vector3 drawn =
-                direction_around(axis, density.invert(u * density.mass()), azimuth);
+            const Vector3 drawn = direction_around(axis, density.sample(u), azimuth);
             const double psi = 2 * std::atan(half_tangent_between(axis, drawn));
             const auto bin = std::ranges::lower_bound(ends, psi) - ends.begin();
             ++counts[std::min(static_cast<std::size_t>(bin), counts.size() - 1)];

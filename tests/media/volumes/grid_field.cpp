@@ -8,7 +8,6 @@
 #include <numbers>
 #include <random>
 
-#include "media/volumes/vdb_header.h"
 #include "tests/support/field_maker.h"
 
 namespace uw {
@@ -70,26 +69,6 @@ TEST(GridField, UpZIsTurnedUpright) {
     // The file's (1, 2, 3) is upright (1, 3, -2).
     EXPECT_NEAR(value_at(*field, {10 + 2, 20 + 6, 30 - 4}), bumpy(1, 2, 3), k_quantum);
     EXPECT_EQ(maker.reports[0].metres_per_voxel, Vector3(2.0));
-}
-
-TEST(GridField, AutomaticPlacementKnowsBlender) {
-    FieldMaker maker;
-    const auto place = [&](const VdbFixture& fixture, const std::string& creator) {
-        test::write_fixture(maker.dir / "auto.vdb", {fixture}, creator);
-        return decide_placement(read_vdb_header(maker.dir / "auto.vdb", "here"), VolumeDesc{});
-    };
-    VdbFixture fixture = bumpy_fixture();
-    EXPECT_EQ(place(fixture, "Houdini").centering, Centering::node);
-    EXPECT_EQ(place(fixture, "Houdini").up, UpAxis::y);
-    EXPECT_EQ(place(fixture, "").centering, Centering::node);  // "density" is everyone's name
-    fixture.blender_metadata = true;
-    EXPECT_EQ(place(fixture, "").centering, Centering::cell);
-    EXPECT_EQ(place(fixture, "").up, UpAxis::z);
-    EXPECT_TRUE(place(fixture, "").automatic_centering);
-    EXPECT_EQ(place(fixture, "Houdini").centering, Centering::node);  // converted by Houdini
-    fixture.blender_metadata = false;
-    fixture.name = "density_noise";
-    EXPECT_EQ(place(fixture, "").centering, Centering::cell);
 }
 
 /// Composite midpoint rule over the definition of the interpolant.

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "media/water/phase_functions.h"
+#include "media/water/fournier_forand.h"
 
 #include <gtest/gtest.h>
 
@@ -36,8 +36,8 @@ TEST(FournierForand, BackscatterFraction) {
     const double n = 1.10, mu = 3.5835;
     const auto phase = test::fournier_forand(n, mu);
     const PhaseFunction& p = *phase;
-    const double back = test::integral_over_sphere(
-        [&](double psi) { return psi > pi / 2 ? p.evaluate(psi) : 0.0; });
+    const double back =
+        test::integral_over_sphere([&](double psi) { return psi > pi / 2 ? p.eval(psi) : 0.0; });
     const double nu = (3 - mu) / 2, d = 4 / (3 * (n - 1) * (n - 1)) / 2;
     const double closed =
         1 - (1 - std::pow(d, nu + 1) - 0.5 * (1 - std::pow(d, nu))) / ((1 - d) * std::pow(d, nu));
@@ -53,7 +53,7 @@ TEST(FournierForand, IsSmoothThroughDeltaOne) {
             const auto phase = test::fournier_forand(n, mu);
             const PhaseFunction& p = *phase;
             const auto at_delta = [&](double delta) {
-                return p.evaluate(2 * std::asin(std::sqrt(0.75 * delta) * (n - 1)));
+                return p.eval(2 * std::asin(std::sqrt(0.75 * delta) * (n - 1)));
             };
             EXPECT_TRUE(std::isfinite(at_delta(1)));
             for (const double delta : {0.95, 1.0, 1.05}) {

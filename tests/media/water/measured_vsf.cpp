@@ -39,9 +39,8 @@ TEST(MeasuredVsf, PetzoldsWatersScatterAsMuchAsHeFound) {
     }
     // The molecules are taken away at each angle: at 90 degrees most of the ocean's is theirs.
     const SpeciesOptics ocean = species_optics(desc.species[2], 514, desc);
-    EXPECT_NEAR(
-        ocean.scattering * ocean.phase->evaluate(std::numbers::pi / 2) + water_vsf_90(514, 35),
-        2.4593e-4, 1e-9);
+    EXPECT_NEAR(ocean.scattering * ocean.phase->eval(std::numbers::pi / 2) + water_vsf_90(514, 35),
+                2.4593e-4, 1e-9);
     // In the harbour's water, an exact multiple of it, and in that of grids.
     const WaterDesc doubled =
         vsf_water("{species: {h: {library: petzold-harbor}}, particles: {h: 2}, bands: [514]}");
@@ -67,13 +66,13 @@ TEST(MeasuredVsf, IsContinuedByThePowerLawOfItsFirstAngles) {
     species.vsf->file = folder.path() / "vsf.csv";
     const SpeciesOptics optics = species_optics(species, 500, desc);
     const double degree = std::numbers::pi / 180;
-    const auto beta = [&](double psi) { return optics.scattering * optics.phase->evaluate(psi); };
+    const auto beta = [&](double psi) { return optics.scattering * optics.phase->eval(psi); };
     for (const double psi : {0.001, 0.01, 0.1, 1.0, 5.0})
         EXPECT_NEAR(beta(psi * degree) / (100 * std::pow(psi, -1.5)), 1, 1e-9) << psi;
     // Held above the last angle.
     folder.write("vsf.csv", "angle_deg,beta_500\n1,100\n170,0.5\n");
     const SpeciesOptics held = species_optics(species, 500, desc);
-    EXPECT_NEAR(held.scattering * held.phase->evaluate(175 * degree), 0.5, 1e-9);
+    EXPECT_NEAR(held.scattering * held.phase->eval(175 * degree), 0.5, 1e-9);
 }
 
 TEST(MeasuredVsf, IsLinearBetweenWavelengthsAndHeldBeyond) {
@@ -89,7 +88,7 @@ TEST(MeasuredVsf, IsLinearBetweenWavelengthsAndHeldBeyond) {
     const WaterDesc desc = vsf_water(text);
     const auto beta = [&](double nm) {
         const SpeciesOptics optics = species_optics(desc.species[0], nm, desc);
-        return optics.scattering * optics.phase->evaluate(std::numbers::pi / 2);
+        return optics.scattering * optics.phase->eval(std::numbers::pi / 2);
     };
     EXPECT_NEAR(beta(440), 0.3, 1e-12);
     EXPECT_NEAR(beta(470), 0.2, 1e-12);

@@ -18,25 +18,39 @@ WaterDesc water_with(double small_ppm, double large_ppm) {
     return water;
 }
 
-/// From one water to another that differs in the large particles alone.
-void expect_difference(WaterDesc from, double more_ppm) {
-    const ParticleDerivative found = particle_derivative(from, {}, WaterParticles::large);
+Medium with_one_more(const WaterDesc& water, WaterParticles particles) {
+    return with_one_more_ppm(build_water_model(water, {}), water, {}, particles);
+}
+
+/// Expects that `more_ppm` change absorption and the volume scattering function as far as they do
+/// in a model that is built with so many more particles. 1e-9 of what the water scatters forward
+/// per ppm: rounding.
+void expect_difference(const WaterDesc& from, WaterParticles particles, double more_ppm) {
     const Medium before = build_water_model(from, {}).medium;
-    *from.large_ppm += more_ppm;
-    const Medium after = build_water_model(from, {}).medium;
-    const Spectrum scattering = found.per_ppm.total_scattering();
+    const Medium one_more = with_one_more(from, particles);
+    WaterDesc to = from;
+    *(particles == WaterParticles::small ? to.small_ppm : to.large_ppm) += more_ppm;
+    const Medium after = build_water_model(to, {}).medium;
     for (std::size_t b = 0; b < 3; ++b) {
-        EXPECT_GT(scattering[b], 0);
-        const double more_scattering =
-            after.uniform.total_scattering()[b] - before.uniform.total_scattering()[b];
-        EXPECT_NEAR(more_ppm * scattering[b], more_scattering, 1e-9);
-        const double more_absorption = after.uniform.absorption[b] - before.uniform.absorption[b];
-        EXPECT_NEAR(more_ppm * found.per_ppm.absorption[b], more_absorption, 1e-9);
+        EXPECT_NEAR(more_ppm * (one_more.uniform.absorption[b] - before.uniform.absorption[b]),
+                    after.uniform.absorption[b] - before.uniform.absorption[b], 1e-9);
+        for (const double psi : {0.01, 0.3, 1.5, 3.0}) {
+            const auto beta = [&](const Medium& medium) {
+                return vsf(medium, medium.uniform, b, psi);
+            };
+            const double difference = beta(after) - beta(before);
+            EXPECT_GT(difference, 0);
+            EXPECT_NEAR(more_ppm * (beta(one_more) - beta(before)), difference,
+                        1e-9 * beta(one_more));
+        }
     }
 }
 
 TEST(ParticleDerivative, IsWhatMoreOfThemAdds) {
-    for (const double ppm : {0.0, 0.01, 0.2, 3.0}) expect_difference(water_with(0.03, ppm), 0.005);
+    for (const double small_ppm : {0.0, 0.03})
+        for (const double large_ppm : {0.0, 0.01, 0.2, 3.0})
+            for (const WaterParticles particles : {WaterParticles::small, WaterParticles::large})
+                expect_difference(water_with(small_ppm, large_ppm), particles, 0.005);
 }
 
 TEST(ParticleDerivative, HoldsAbsorptionBeyondThePresetsOwnParticles) {
@@ -46,22 +60,30 @@ TEST(ParticleDerivative, HoldsAbsorptionBeyondThePresetsOwnParticles) {
     for (const double ppm : {0.5 * preset_ppm, preset_ppm, 2 * preset_ppm}) {
         WaterDesc water = water_with(0.03, ppm);
         water.mineral_absorption = true;
-        expect_difference(water, 0.1 * preset_ppm);
-        const ParticleDerivative found = particle_derivative(water, {}, WaterParticles::large);
+        expect_difference(water, WaterParticles::large, 0.1 * preset_ppm);
+        const double more = with_one_more(water, WaterParticles::large).uniform.absorption[1] -
+                            build_water_model(water, {}).medium.uniform.absorption[1];
         if (ppm < preset_ppm)
-            EXPECT_NEAR(found.per_ppm.absorption[1], 0, 1e-12);
+            EXPECT_EQ(more, 0);
         else
-            EXPECT_GT(found.per_ppm.absorption[1], 1e-4);
+            EXPECT_GT(more, 1e-4);
     }
 }
 
-TEST(ParticleDerivative, HasThePhaseFunctionOfParticlesThatAreNotThere) {
-    const WaterDesc none = water_with(0, 0);
-    EXPECT_EQ(build_water_model(none, {}).medium.phase_count(), 1);
-    const ParticleDerivative found = particle_derivative(none, {}, WaterParticles::small);
-    ASSERT_EQ(found.phase_functions.size(), 2U);
-    EXPECT_EQ(found.per_ppm.scattering[0][0], 0);
-    EXPECT_GT(found.per_ppm.scattering[1][0], 0);
+// Whoever has coefficients by the medium's phase functions can use them with the new one, too.
+TEST(ParticleDerivative, KeepsThePhaseFunctionsInOrder) {
+    for (const double large_ppm : {0.0, 0.1}) {
+        const WaterDesc none = water_with(0, large_ppm);
+        const Medium before = build_water_model(none, {}).medium;
+        const Medium more = with_one_more(none, WaterParticles::small);
+        ASSERT_EQ(more.phase_count(), before.phase_count() + 1);
+        for (std::size_t m = 0; m < before.phase_functions.size(); ++m) {
+            EXPECT_EQ(more.phase_functions[m]->description(),
+                      before.phase_functions[m]->description());
+            EXPECT_EQ(more.uniform.scattering[m], before.uniform.scattering[m]);
+        }
+        EXPECT_GT(more.uniform.scattering.back()[0], 0);
+    }
 }
 
 TEST(ParticleDerivative, IsRefusedWhereThereIsNone) {
@@ -71,11 +93,15 @@ TEST(ParticleDerivative, IsRefusedWhereThereIsNone) {
     grid.grid = "ink";
     grid.optics = GridMappingDesc::Optics{{1, 1, 1}, {1, 1, 1}, {}};
     volume.grids = {grid};
-    EXPECT_THROW(particle_derivative(water, {volume}, WaterParticles::small), UsageError);
+    const WaterModel model = build_water_model(water, {});
+    const auto more = [&](const std::vector<VolumeDesc>& volumes) {
+        return with_one_more_ppm(model, water, volumes, WaterParticles::small);
+    };
+    EXPECT_THROW(more({volume}), UsageError);
     volume.grids[0].optics->scattering = {0, 0, 0};
-    EXPECT_NO_THROW(particle_derivative(water, {volume}, WaterParticles::small));
+    EXPECT_NO_THROW(more({volume}));
     water.scattering.emplace();
-    EXPECT_THROW(particle_derivative(water, {}, WaterParticles::small), UsageError);
+    EXPECT_THROW(more({}), UsageError);
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST_F(PhaseTableFile, IsReadAndNormalised) {
     const WaterModel model = build("# 1/sr\nangle_deg,phase\n0,0.0796\n180,0.0796\n");
     EXPECT_TRUE(model.warnings.empty());
     expect_phase_function_laws(*model.medium.phase_functions.at(0));
-    EXPECT_NEAR(model.medium.phase_functions[0]->evaluate(1), 1 / (4 * std::numbers::pi), 1e-12);
+    EXPECT_NEAR(model.medium.phase_functions[0]->eval(1), 1 / (4 * std::numbers::pi), 1e-12);
 }
 
 TEST_F(PhaseTableFile, WarnsOfWhatIsNoPhaseFunction) {

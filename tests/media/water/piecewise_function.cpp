@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "media/water/phase_functions.h"
+#include "media/water/tabulated_phase.h"
 
 #include <gtest/gtest.h>
 
@@ -16,30 +16,30 @@ TEST(PiecewiseFunction, FollowsEachSegmentsLaw) {
     const PiecewiseFunction f(
         {0, 0.1, 1, 2, k_half_turn}, {1, 5, 0.5, 0.05, 0},
         {SegmentLaw::linear, SegmentLaw::power, SegmentLaw::exponential, SegmentLaw::linear});
-    EXPECT_NEAR(f.evaluate(0.05), 3, 1e-14);
+    EXPECT_NEAR(f.eval(0.05), 3, 1e-14);
     // 5 at 0.1 and 0.5 at 1: 0.5 psi^-1.
-    for (const double psi : {0.1, 0.2, 0.5, 0.99}) EXPECT_NEAR(f.evaluate(psi), 0.5 / psi, 1e-13);
+    for (const double psi : {0.1, 0.2, 0.5, 0.99}) EXPECT_NEAR(f.eval(psi), 0.5 / psi, 1e-13);
     // A tenth per radian.
     for (const double psi : {1.0, 1.3, 1.99})
-        EXPECT_NEAR(f.evaluate(psi), 0.5 * std::pow(0.1, psi - 1), 1e-14);
-    EXPECT_NEAR(f.evaluate(0.5 * (2 + k_half_turn)), 0.025, 1e-15);
-    EXPECT_EQ(f.evaluate(k_half_turn), 0);
+        EXPECT_NEAR(f.eval(psi), 0.5 * std::pow(0.1, psi - 1), 1e-14);
+    EXPECT_NEAR(f.eval(0.5 * (2 + k_half_turn)), 0.025, 1e-15);
+    EXPECT_EQ(f.eval(k_half_turn), 0);
 }
 
 // 2 and 4 begin new exponents, by which segments are looked up.
 TEST(PiecewiseFunction, EndsAtAPowerOfTwo) {
     for (const double end : {2.0, 4.0}) {
         const PiecewiseFunction f({0, 1, end}, {3, 2, 1}, {SegmentLaw::linear, SegmentLaw::linear});
-        EXPECT_NEAR(f.evaluate(end), 1, 1e-15);
-        EXPECT_NEAR(f.evaluate(0.5 * (1 + end)), 1.5, 1e-15);
+        EXPECT_NEAR(f.eval(end), 1, 1e-15);
+        EXPECT_NEAR(f.eval(0.5 * (1 + end)), 1.5, 1e-15);
     }
 }
 
 TEST(PiecewiseFunction, BeyondItsEndsIsTheNearerEnd) {
     const PiecewiseFunction f({0, 1, k_half_turn}, {3, 2, 1},
                               {SegmentLaw::linear, SegmentLaw::linear});
-    EXPECT_EQ(f.evaluate(-1e-17), f.evaluate(0));
-    EXPECT_EQ(f.evaluate(k_half_turn + 1e-15), f.evaluate(k_half_turn));
+    EXPECT_EQ(f.eval(-1e-17), f.eval(0));
+    EXPECT_EQ(f.eval(k_half_turn + 1e-15), f.eval(k_half_turn));
 }
 
 TEST(PiecewiseFunction, IntegratesOverTheSphere) {
@@ -74,12 +74,12 @@ TEST(PiecewiseFunction, ScalesValuesAndIntegralsAlike) {
     PiecewiseFunction f({0, 0.5, 1, k_half_turn}, {2, 1, 3, 0},
                         {SegmentLaw::exponential, SegmentLaw::power, SegmentLaw::linear});
     const double integral = f.integral(0, 3);
-    const double values[] = {f.evaluate(0.2), f.evaluate(0.7), f.evaluate(2)};
+    const double values[] = {f.eval(0.2), f.eval(0.7), f.eval(2)};
     f.scale(1e-3);
     EXPECT_NEAR(f.integral(0, 3), 1e-3 * integral, 1e-15 * integral);
-    EXPECT_NEAR(f.evaluate(0.2), 1e-3 * values[0], 1e-17);
-    EXPECT_NEAR(f.evaluate(0.7), 1e-3 * values[1], 1e-17);
-    EXPECT_NEAR(f.evaluate(2), 1e-3 * values[2], 1e-17);
+    EXPECT_NEAR(f.eval(0.2), 1e-3 * values[0], 1e-17);
+    EXPECT_NEAR(f.eval(0.7), 1e-3 * values[1], 1e-17);
+    EXPECT_NEAR(f.eval(2), 1e-3 * values[2], 1e-17);
 }
 
 TEST(PiecewiseFunction, FindsItsSegmentAmongMany) {
@@ -91,8 +91,8 @@ TEST(PiecewiseFunction, FindsItsSegmentAmongMany) {
     }
     const PiecewiseFunction f(psi, value, std::vector<SegmentLaw>(1000, SegmentLaw::linear));
     for (std::size_t i = 0; i < 1000; ++i) {
-        EXPECT_NEAR(f.evaluate(psi[i]), value[i], 1e-9);
-        EXPECT_NEAR(f.evaluate(0.5 * (psi[i] + psi[i + 1])), 2, 1e-9);
+        EXPECT_NEAR(f.eval(psi[i]), value[i], 1e-9);
+        EXPECT_NEAR(f.eval(0.5 * (psi[i] + psi[i + 1])), 2, 1e-9);
     }
     EXPECT_EQ(f.knots(), psi);
 }

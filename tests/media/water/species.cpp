@@ -78,7 +78,7 @@ TEST(Species, DependsOnSizesByTheWavelength) {
     const SpeciesOptics two = species_optics(junge(1.1, 1, 40), 800, 1.34);
     EXPECT_NEAR(two.scattering / one.scattering, 0.5, 1e-9);
     for (const double psi : {1e-4, 0.01, 0.1, 1.0, 3.0})
-        EXPECT_NEAR(two.phase->evaluate(psi) / one.phase->evaluate(psi), 1, 1e-9) << psi;
+        EXPECT_NEAR(two.phase->eval(psi) / one.phase->eval(psi), 1, 1e-9) << psi;
 }
 
 // Kopelevich's small particles are minerals of index 1.15 and at most 1 um, his large ones organic,
@@ -380,11 +380,10 @@ TEST(Species, AddToTheWaterInEachBand) {
     ASSERT_EQ(table.uniform.parts.size(), 3U);
     EXPECT_EQ(table.uniform.parts[1].name, "silt");
     EXPECT_NEAR(table.uniform.scattering(2), model.medium.uniform.total_scattering()[2], 1e-12);
-    EXPECT_NEAR(
-        table.uniform.vsf(0, 0.3),
-        model.medium.uniform.scattering[0][0] * model.medium.phase_functions[0]->evaluate(0.3) +
-            table.uniform.vsf(0, 1, 0.3) + table.uniform.vsf(0, 2, 0.3),
-        1e-12);
+    EXPECT_NEAR(table.uniform.vsf(0, 0.3),
+                model.medium.uniform.scattering[0][0] * model.medium.phase_functions[0]->eval(0.3) +
+                    table.uniform.vsf(0, 1, 0.3) + table.uniform.vsf(0, 2, 0.3),
+                1e-12);
 }
 
 // Two descriptions of the same water: Kopelevich's particles by the water's own keys, and as
@@ -413,8 +412,8 @@ TEST(Species, OfTheLibraryAreKopelevichsParticles) {
         for (std::size_t m = 0; m < 3; ++m) {
             EXPECT_DOUBLE_EQ(names.medium.uniform.scattering[m][i],
                              keys.medium.uniform.scattering[m][i]);
-            EXPECT_EQ(names.medium.phase_functions[m]->evaluate(0.2),
-                      keys.medium.phase_functions[m]->evaluate(0.2));
+            EXPECT_EQ(names.medium.phase_functions[m]->eval(0.2),
+                      keys.medium.phase_functions[m]->eval(0.2));
         }
         EXPECT_DOUBLE_EQ(keys.medium.uniform.scattering[1][i],
                          0.3 * kopelevich_small_scattering(by_keys.bands_nm[i]));
@@ -452,8 +451,8 @@ TEST(Species, OfGridsAreConstituentsPerPpm) {
         // Each band has the phase function of its own wavelength.
         double beta = 0;
         for (std::size_t m = 0; m < model.medium.phase_functions.size(); ++m)
-            beta += silt.per_unit.scattering[m][i] * model.medium.phase_functions[m]->evaluate(0.5);
-        EXPECT_NEAR(beta, optics.scattering * optics.phase->evaluate(0.5), 1e-12);
+            beta += silt.per_unit.scattering[m][i] * model.medium.phase_functions[m]->eval(0.5);
+        EXPECT_NEAR(beta, optics.scattering * optics.phase->eval(0.5), 1e-12);
     }
 }
 

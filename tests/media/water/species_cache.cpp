@@ -103,7 +103,7 @@ TEST_F(SpeciesCache, HoldsSpecies) {
     EXPECT_EQ(read.scattering, computed.scattering);
     EXPECT_EQ(read.absorption, computed.absorption);
     for (const double psi : {0.0, 0.01, 0.7, 3.0})
-        EXPECT_EQ(read.phase->evaluate(psi), computed.phase->evaluate(psi));
+        EXPECT_EQ(read.phase->eval(psi), computed.phase->eval(psi));
     species.index.k = 0.01;
     EXPECT_GT(species_optics(species, 543, 1.34, [&](double) { ++told; }).absorption, 0);
     EXPECT_GT(told, 0);

@@ -81,23 +81,6 @@ TEST(WaterModel, MineralAbsorptionByHand) {
                 1e-15);
 }
 
-TEST(WaterModel, DissolvedMatterAddsToAbsorption) {
-    WaterDesc water = basic_water();
-    water.cdom = 0.2;
-    water.chlorophyll = 1;
-    water.bands_nm = {440};
-    const WaterModel model = build_water_model(water, {});
-    EXPECT_NEAR(model.medium.uniform.absorption[0],
-                pure_water_absorption(440, 20, 35) + 0.2 + 0.0403, 1e-15);
-    EXPECT_TRUE(model.warnings.empty());
-    water.bands_nm = {380};
-    EXPECT_EQ(build_water_model(water, {}).warnings.size(), 1U);  // chlorophyll below 400 nm
-    water.absorption = PerBand{0.5};
-    const WaterModel given = build_water_model(water, {});
-    EXPECT_EQ(given.medium.uniform.absorption[0], 0.5);
-    EXPECT_EQ(given.warnings.size(), 1U);  // cdom and chlorophyll are not used
-}
-
 TEST(WaterModel, PresetAndItsOverrides) {
     WaterDesc water = basic_water();
     water.preset = "jerlov-ii";

@@ -7,7 +7,8 @@
 #include <numbers>
 
 #include "core/base/csv_table.h"
-#include "media/water/phase_functions.h"
+#include "media/water/molecular_phase.h"
+#include "media/water/tabulated_phase.h"
 #include "media/water/water_types.h"
 #include "tests/support/adaptive_quadrature.h"
 #include "tests/support/described_phase.h"
@@ -151,8 +152,7 @@ TEST(WaterTable, MomentsOfTables) {
         for (std::size_t i = 0; i + 1 < edges.size(); ++i)
             sum += AdaptiveQuadrature::integrate(
                 [&](double psi) {
-                    return 2 * pi * p.evaluate(psi) * std::sin(psi) *
-                           (from > 0 ? 1.0 : std::cos(psi));
+                    return 2 * pi * p.eval(psi) * std::sin(psi) * (from > 0 ? 1.0 : std::cos(psi));
                 },
                 edges[i], edges[i + 1], 1e-12);
         return sum;

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "media/water/phase_functions.h"
+#include "media/water/tabulated_phase.h"
 #include "render/validation/light_trial.h"
 #include "render/validation/published_tables.h"
 
@@ -54,7 +54,7 @@ double asymptotic_k(double albedo) {
         const double t = (i + 0.5) / k_steps;
         const double angle = std::numbers::pi * t * t * t;
         const double cosine = std::cos(angle);
-        const double weight = 2 * std::numbers::pi * std::sin(angle) * phase.evaluate(angle) * 3 *
+        const double weight = 2 * std::numbers::pi * std::sin(angle) * phase.eval(angle) * 3 *
                               std::numbers::pi * t * t / k_steps;
         double before = 1, here = cosine;
         moments[0] += weight;

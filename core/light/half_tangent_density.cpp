@@ -1,34 +1,35 @@
-#include "core/paths/half_tangent_density.h"
+#include "core/light/half_tangent_density.h"
 
 #include <bit>
 #include <cmath>
-
-#include "core/paths/path_segment.h"
 
 namespace uw {
 
 namespace {
 
 constexpr double k_min_h = 0x1p-24, k_max_h = 0x1p24;
-constexpr int k_cell_bits = 4;  // of the mantissa: 16 cells per octave
-constexpr int k_offset_bits = 52 - k_cell_bits;
-constexpr std::uint64_t k_first = std::bit_cast<std::uint64_t>(k_min_h) >> k_offset_bits;
+constexpr int k_density_cell_bits = 4;  // of the mantissa: 16 cells per octave
+constexpr int k_density_offset_bits = 52 - k_density_cell_bits;
+constexpr std::uint64_t k_first_density_cell =
+    std::bit_cast<std::uint64_t>(k_min_h) >> k_density_offset_bits;
 // The cells of the octaves, after the one from 0 to k_min_h.
-constexpr std::size_t k_cells =
-    1 + (std::bit_cast<std::uint64_t>(k_max_h) >> k_offset_bits) - k_first;
+constexpr std::size_t k_density_cells =
+    1 + (std::bit_cast<std::uint64_t>(k_max_h) >> k_density_offset_bits) - k_first_density_cell;
 constexpr std::size_t k_guides = 1024;
 
 std::vector<double> make_nodes() {
     std::vector<double> nodes{0.0};
-    for (std::uint64_t cell = 0; cell < k_cells; ++cell)
-        nodes.push_back(std::bit_cast<double>((k_first + cell) << k_offset_bits));
+    for (std::uint64_t cell = 0; cell < k_density_cells; ++cell)
+        nodes.push_back(
+            std::bit_cast<double>((k_first_density_cell + cell) << k_density_offset_bits));
     return nodes;
 }
 
 // The cell that contains `h`; its nodes are `cell` and `cell` + 1. Precondition: h < k_max_h.
 std::size_t cell_of(double h) {
     if (h < k_min_h) return 0;
-    return static_cast<std::size_t>((std::bit_cast<std::uint64_t>(h) >> k_offset_bits) - k_first) +
+    return static_cast<std::size_t>((std::bit_cast<std::uint64_t>(h) >> k_density_offset_bits) -
+                                    k_first_density_cell) +
            1;
 }
 
@@ -41,19 +42,19 @@ std::span<const double> HalfTangentDensity::nodes() {
 
 HalfTangentDensity::HalfTangentDensity(std::span<const double> at_nodes) {
     const std::span<const double> h = nodes();
-    for (std::size_t i = 0; i < k_cells; ++i) {
+    for (std::size_t i = 0; i < k_density_cells; ++i) {
         const double width = h[i + 1] - h[i];
         cells_.push_back({h[i], mass_, at_nodes[i], (at_nodes[i + 1] - at_nodes[i]) / width});
         mass_ += 0.5 * (at_nodes[i] + at_nodes[i + 1]) * width;
     }
-    cells_.push_back({h[k_cells], mass_, 0, 0});
+    cells_.push_back({h[k_density_cells], mass_, 0, 0});
     guides_.assign(k_guides, 0);
     if (!(mass_ > 0)) return;
     guides_per_mass_ = k_guides / mass_;
     std::size_t cell = 0;
     for (std::size_t i = 0; i < k_guides; ++i) {
         const double begin = static_cast<double>(i) / guides_per_mass_;
-        while (cell + 1 < k_cells && cells_[cell + 1].before <= begin) ++cell;
+        while (cell + 1 < k_density_cells && cells_[cell + 1].before <= begin) ++cell;
         guides_[i] = static_cast<std::uint16_t>(cell);
     }
 }
@@ -74,7 +75,7 @@ double HalfTangentDensity::density(double h) const {
 double HalfTangentDensity::invert(double mass) const {
     const auto guide = static_cast<std::size_t>(mass * guides_per_mass_);
     std::size_t i = guides_[std::min(guide, k_guides - 1)];
-    while (i + 1 < k_cells && cells_[i + 1].before <= mass) ++i;
+    while (i + 1 < k_density_cells && cells_[i + 1].before <= mass) ++i;
     const Cell& cell = cells_[i];
     const double rest = std::max(0.0, mass - cell.before);
     // Solves rest = value t + slope t^2 / 2 for t, in a form without cancellation.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
@@ -10,6 +11,18 @@
 #include "core/base/vector_math.h"
 
 namespace uw {
+
+/// Two unit vectors that are perpendicular to a third one, and to each other (Duff et al. 2017).
+struct Tangents {
+    Vector3 u, v;
+
+    explicit Tangents(const Vector3& axis) {
+        const double sign = std::copysign(1.0, axis.z);
+        const double a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
+        u = {1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x};
+        v = {b, sign + axis.y * axis.y * a, -axis.y};
+    }
+};
 
 /// One of several alternatives that was drawn at random, and the probability of drawing it.
 struct Choice {
@@ -50,6 +63,11 @@ class HalfTangentDensity {
     double density(double h) const;
     /// The h up to which the integral is `mass`, 0 <= mass <= mass().
     double invert(double mass) const;
+
+    /// Draws h from the normalised density; `u` in [0, 1].
+    double sample(double u) const { return invert(u * mass_); }
+    /// The pdf of sample() per unit of h.
+    double pdf(double h) const { return density(h) / mass_; }
 
   private:
     /// A piece between two nodes. It contains all that a look-up needs, in half a cache line.
