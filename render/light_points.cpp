@@ -128,7 +128,7 @@ class PointLight {
                 (1 - left) / (k_places * c[band] * static_cast<double>(optics_.bands()));
             const Point3 x = segment.ray.at(s);
             for (const Lamp& lamp : emitters_) {
-                const LampPassage passage(segment.ray, lamp);
+                const LampPassage passage = lamp.passage(segment.ray);
                 const double radius = passage.radius(s);
                 if (!(radius > 0) || lamp.contains(radius)) continue;
                 const Point3 origin = lamp.origin(x);

@@ -109,9 +109,7 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
         if (index < scene.sun_foci.size() && scene.sun_foci[index]) {
             // The sun's disc is in the map already.
             scene.emitters.push_back(
-                scene.lamps.back()
-                    .emitter(index, scene.lamps.back().sunlight()->direction, 1)
-                    .focused(scene.sun_foci[index]));
+                scene.lamps.back().with_index(index).focused(scene.sun_foci[index]));
             continue;
         }
         append_emitters(lamp, scene.lamps.back(), index, thinning, desc.camera.world_from_camera,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -12,7 +13,9 @@
 
 #include "core/base/error.h"
 #include "core/image/spectral_bands.h"
+#include "core/light/directional_emitter.h"
 #include "core/light/lamp_profile.h"
+#include "core/light/point_emitter.h"
 
 namespace uw {
 
@@ -138,6 +141,12 @@ std::vector<Vector3> fill(const LampFrame& frame, const std::vector<UnitPoint>& 
     return points;
 }
 
+// One of the emitters of which a lamp consists, with this fraction of its light.
+Lamp part_of(const Lamp& lamp, std::size_t index, double fraction,
+             std::shared_ptr<const Emitter> emitter) {
+    return {lamp.name(), std::move(emitter), fraction * lamp.axis_intensity(), index, fraction};
+}
+
 // In the space of the directions' sines a disc of uniform radiance adds the same irradiance per
 // area to a plane perpendicular to its axis; on a plane perpendicular to the direction itself the
 // irradiance is greater by 1 / cosine. `direction`: of its centre, in the air where the water's
@@ -159,8 +168,9 @@ void append_sun(const SunDesc& sun, const Vector3& direction, const Lamp& lamp, 
         const double cosine = std::sqrt(1 - glm::dot(points[i], points[i]));
         const Vector3 in_air = cosine * middle + points[i];
         const double factor = irradiance_below(surface, in_air) / (of_middle * cosine);
-        emitters.push_back(lamp.emitter(index, Sunlight::from_air(in_air, surface).direction,
-                                        1.0 / count, patches[i])
+        emitters.push_back(part_of(lamp, index, 1.0 / count,
+                                   std::make_shared<DirectionalEmitter>(
+                                       Sunlight::from_air(in_air, surface), patches[i]))
                                .brightened(factor));
     }
 }
@@ -209,14 +219,15 @@ void append_emitters(const Lamp& lamp, std::size_t index, std::span<const Emissi
     };
     const double all = sum(lamp.axis_intensity());
     // A lamp without parts has one dark emitter, so that the indices of other lamps stay the same.
-    if (parts.empty()) emitters.push_back(lamp.emitter(index, lamp.position(), 1));
+    if (parts.empty()) emitters.push_back(lamp.with_index(index));
     for (const EmissivePart& part : parts) {
         LampFrame frame{{}, {1, 0, 0}, {0, 1, 0}};
         frame.extent.shape = LampExtentDesc::Shape::sphere;
         frame.extent.radius = part.radius;
         const LampPatch patch{frame, part.centre, {0, 0, 0}, {1, 1, 1}, part.radius};
-        emitters.push_back(
-            lamp.emitter(index, part.centre, part.intensity, sum(part.intensity) / all, patch));
+        emitters.emplace_back(
+            lamp.name(), std::make_shared<PointEmitter>(part.centre, IsotropicProfile{}, patch),
+            part.intensity, index, sum(part.intensity) / all);
     }
 }
 
@@ -226,8 +237,7 @@ void append_surface(const LampDesc& desc, const Lamp& lamp, std::size_t index, i
     const LampFrame frame = frame_of(desc, world_from_camera);
     const int count = point_count(desc, thinning);
     surfaces.push_back(
-        {lamp.emitter(index, lamp.position(), 1), frame,
-         points_of(frame, lamp.position(), lattice(count)),
+        {lamp.with_index(index), frame, points_of(frame, lamp.position(), lattice(count)),
          points_of(frame, lamp.position(), lattice(std::max(count, k_many_points)))});
 }
 
@@ -238,7 +248,7 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
         return;
     }
     if (!desc.extent) {
-        emitters.push_back(lamp.emitter(index, lamp.position(), 1));
+        emitters.push_back(lamp.with_index(index));
         return;
     }
     const LampFrame frame = frame_of(desc, world_from_camera);
@@ -246,9 +256,18 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
     const std::vector<Vector3> points = fill(frame, places);
     const std::vector<LampPatch> patches = divide(frame, lamp.position(), places);
     const double fraction_of_each = 1.0 / static_cast<double>(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i)
+    const LampProfile& sharp = dynamic_cast<const PointEmitter&>(lamp.emitter()).profile();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Point3 position = lamp.position() + points[i];
+        const LampPatch& patch = patches[i];
+        LampProfile profile =
+            points.size() == 1
+                ? sharp
+                : softened(sharp, patch.centre + patch.middle() - position, patch.covariance());
         emitters.push_back(
-            lamp.emitter(index, lamp.position() + points[i], fraction_of_each, patches[i]));
+            part_of(lamp, index, fraction_of_each,
+                    std::make_shared<PointEmitter>(position, std::move(profile), patch)));
+    }
 }
 
 Lamp make_lamp(const LampDesc& desc, const Sky& sky) {
@@ -262,7 +281,7 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
     const std::vector<SkyDirection> directions =
         sky.directions(std::max(1, desc.sky->samples / thinning), surface.n.value());
     // A lamp without parts has one dark emitter, so that the indices of other lamps stay the same.
-    if (directions.empty()) emitters.push_back(lamp.emitter(index, desc.direction, 1.0));
+    if (directions.empty()) emitters.push_back(lamp.with_index(index));
     for (const SkyDirection& part : directions) {
         const Vector3 in_air = -(sky.world_from_sky() * part.towards);
         const LampPlacement placement{{}, in_air};
@@ -272,9 +291,10 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
         const LampPatch patch{frame, {}, {0, 0, 0}, {1, 1, 1}, frame.extent.radius};
         Spectrum irradiance = part.normal_irradiance();
         irradiance *= irradiance_below(surface, in_air);
-        emitters.push_back(lamp.emitter(index, Sunlight::from_air(in_air, surface).direction,
-                                        irradiance, 1.0 / static_cast<double>(directions.size()),
-                                        patch));
+        emitters.emplace_back(
+            lamp.name(),
+            std::make_shared<DirectionalEmitter>(Sunlight::from_air(in_air, surface), patch),
+            irradiance, index, 1.0 / static_cast<double>(directions.size()));
     }
 }
 

@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "core/base/numerics.h"
+#include "core/light/lamp_passage.h"
+#include "core/light/point_emitter.h"
 #include "core/light/ray_panels.h"
 
 namespace uw {

@@ -7,27 +7,6 @@
 
 namespace uw {
 
-LampPassage::LampPassage(const Ray& ray, const Point3& lamp) {
-    const Vector3 to_lamp = lamp - ray.origin;
-    foot = glm::dot(to_lamp, ray.direction);
-    distance = glm::length(to_lamp - foot * ray.direction);
-}
-
-LampPassage::LampPassage(const Ray& ray, const Lamp& lamp) : LampPassage(ray, lamp.position()) {
-    const Sunlight* const sun = lamp.sunlight();
-    if (!sun) {
-        if (const double squared_offset = lamp.squared_offset(ray); squared_offset != 0)
-            distance = std::sqrt(distance * distance + squared_offset);
-        return;
-    }
-    parallel = true;
-    begin_length = sun->length_to(ray.origin);
-    slope = sun->slope(ray.direction);
-    const double sine = glm::length(glm::cross(sun->direction, ray.direction));
-    const double cosine = -glm::dot(sun->direction, ray.direction);  // of psi
-    tangent = cosine > 0 ? sine / (1 + cosine) : (1 - cosine) / sine;
-}
-
 void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s) {
     if (passage.parallel) return;
     const auto append = [&](double at) {

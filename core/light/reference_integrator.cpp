@@ -48,7 +48,7 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
     const double max_c =
         attenuation_.uniform.greatest(static_cast<std::size_t>(attenuation_.band_count));
     for (std::size_t j = 0; j < emitters.size(); ++j) {
-        const LampPassage passage(ray, emitters[j]);
+        const LampPassage passage = emitters[j].passage(ray);
         const double max_distance =
             min_c > 0 ? passage.max_distance(k_extinct_optical_depth / min_c) : k_far;
         const auto scale_at = [&](double s) {
@@ -160,19 +160,12 @@ void check_uniform(const LitScene& scene) {
 class QuadratureIntegrator::RayIntegral {
   public:
     RayIntegral(const QuadratureIntegrator& owner, const Ray& ray, const Lamp& lamp)
-        : owner_(owner), ray_(ray), lamp_(lamp) {
-        if (lamp.sunlight()) {
-            psi_ = std::acos(-glm::dot(lamp.sunlight()->direction, ray.direction));
-            const auto bands = static_cast<std::size_t>(owner.attenuation_.band_count);
-            rate_ = std::max(owner.attenuation_.uniform.least(bands), k_min_rate);
-            return;
-        }
-        const Vector3 to_lamp = lamp.position() - ray.origin;
-        foot_ = glm::dot(to_lamp, ray.direction);
+        : owner_(owner), ray_(ray), lamp_(lamp), passage_(lamp.passage(ray)) {
+        const auto bands = static_cast<std::size_t>(owner.attenuation_.band_count);
+        rate_ = std::max(owner.attenuation_.uniform.least(bands), k_min_rate);
         // A ray straight through the lamp has no angle to integrate over, but one that narrowly
         // misses it does.
-        const Vector3 across = to_lamp - foot_ * ray.direction;
-        distance_ = std::max(1e-9, std::sqrt(glm::dot(across, across) + lamp.squared_offset(ray)));
+        passage_.distance = std::max(1e-9, passage_.distance);
     }
 
     /// In-scatter from `begin` to `end` along the ray.
@@ -199,16 +192,18 @@ class QuadratureIntegrator::RayIntegral {
   private:
     // The variable of integration.
     double variable(double s) const {
-        return lamp_.sunlight() ? -std::exp(-rate_ * s) : std::atan2(distance_, foot_ - s);
+        return passage_.parallel ? -std::exp(-rate_ * s)
+                                 : std::atan2(passage_.distance, passage_.foot - s);
     }
 
     Spectrum integrand(double variable) const {
-        if (!lamp_.sunlight())
-            return scattered(variable, foot_ - distance_ / std::tan(variable),
-                             foot_ + distance_ * std::tan(0.5 * variable), 1 / distance_);
+        const double distance = passage_.distance, foot = passage_.foot;
+        if (!passage_.parallel)
+            return scattered(variable, foot - distance / std::tan(variable),
+                             foot + distance * std::tan(0.5 * variable), 1 / distance);
         if (!(variable < 0)) return {};
         const double s = -std::log(-variable) / rate_;
-        return scattered(psi_, s, s + lamp_.sunlight()->length_to(ray_.at(s)),
+        return scattered(2 * std::atan(passage_.tangent), s, s + passage_.radius(s),
                          -1 / (rate_ * variable));
     }
 
@@ -256,10 +251,9 @@ class QuadratureIntegrator::RayIntegral {
     const QuadratureIntegrator& owner_;
     const Ray& ray_;
     const Lamp& lamp_;
-    double foot_ = 0;
-    double distance_ = 0;
-    double psi_ = 0, rate_ = 0;  // of a sun
-    Spectrum scale_{};           // a first estimate of the integral, per band
+    LampPassage passage_;
+    double rate_ = 0;   // of a sun
+    Spectrum scale_{};  // a first estimate of the integral, per band
 };
 
 QuadratureIntegrator::QuadratureIntegrator(const LitScene& scene, double tolerance)

@@ -15,7 +15,7 @@ namespace uw {
 
 namespace {
 
-constexpr int k_focus_slices = 48;
+constexpr int k_depth_slices = 48;
 constexpr int k_beams_of_texel = 3;  // along each side
 
 /// A beam of light where it enters the water, at depth 0. Single precision is an error of 1e-7 of a
@@ -142,7 +142,7 @@ SunFocus::SunFocus(const WaterSurface& surface, const Vector3& direction, double
                 static_cast<float>(entry->flux / (calm_flux * k_beams_of_texel * k_beams_of_texel));
         }
     });
-    slices_.resize(k_focus_slices + 1);
+    slices_.resize(k_depth_slices + 1);
     const double radius = 0.5 * angle / surface.n();  // of the disc in the water, near the zenith
     parallel_for(slices_.size(), [&](std::size_t k) {
         throw_if_stopped();
@@ -198,7 +198,7 @@ void SunFocus::blur(Grid2D<float>& slice, double radius) const {
 }
 
 double SunFocus::depth_of(std::size_t slice) const {
-    const double fraction = static_cast<double>(slice) / k_focus_slices;
+    const double fraction = static_cast<double>(slice) / k_depth_slices;
     return extent_.depth * fraction * fraction;
 }
 
@@ -248,8 +248,8 @@ double SunFocus::factor(const Place& place) const {
     const std::array<std::size_t, 2> columns = neighbours(u, across), rows = neighbours(v, down);
     // Slices lie at the squares of whole numbers (depth_of), and k^2 and (k + 1)^2 around this one.
     const double square =
-        k_focus_slices * k_focus_slices * std::min(1.0, place.depth / extent_.depth);
-    const int k = std::min(static_cast<int>(std::sqrt(square)), k_focus_slices - 1);
+        k_depth_slices * k_depth_slices * std::min(1.0, place.depth / extent_.depth);
+    const int k = std::min(static_cast<int>(std::sqrt(square)), k_depth_slices - 1);
     const auto w = static_cast<float>((square - k * k) / (2 * k + 1));
     const auto s = static_cast<float>(across), t = static_cast<float>(down);
     const auto value = [&](const Grid2D<float>& slice) {

@@ -253,24 +253,8 @@ struct Facing {
         hidden.resize(samples.size());
     }
 
-    void trace_shadows(const Lamp& lamp, const Surfaces& surfaces) {
-        if (lamp.sunlight()) {
-            for (std::size_t n = 0; n < positions.size(); ++n) {
-                throw_if_stopped();
-                hidden[n] = surfaces.occluded(lamp.origin(positions[n]), positions[n]) ? 1 : 0;
-            }
-            return;
-        }
-        for (std::size_t n = 0; n < positions.size(); n += k_rays_at_once) {
-            throw_if_stopped();
-            const std::size_t count = std::min(k_rays_at_once, positions.size() - n);
-            surfaces.occluded_many(lamp.position(), std::span(positions).subspan(n, count),
-                                   std::span(hidden).subspan(n, count));
-        }
-    }
-
     /// Traces the rays with this number (shadow_origin). `all`: as for find().
-    void trace_shadows(const Lamp& part, std::span<const SurfaceSample* const> all,
+    void trace_shadows(const Lamp& emitter, std::span<const SurfaceSample* const> all,
                        std::size_t number, const Surfaces& surfaces) {
         std::vector<Point3> origins;
         for (std::size_t n = 0; n < positions.size(); n += k_rays_at_once) {
@@ -278,7 +262,7 @@ struct Facing {
             const std::size_t count = std::min(k_rays_at_once, positions.size() - n);
             origins.clear();
             for (std::size_t k = n; k < n + count; ++k)
-                origins.push_back(shadow_origin(part, *all[samples[k]], number));
+                origins.push_back(shadow_origin(emitter, *all[samples[k]], number));
             surfaces.occluded_many(origins, std::span(positions).subspan(n, count),
                                    std::span(hidden).subspan(n, count));
         }
@@ -388,7 +372,7 @@ void DirectLighting::evaluate(std::span<const SurfaceSample* const> samples,
     for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
         const Lamp& lamp = (*scene_.emitters)[j];
         facing.find(lamp, samples);
-        if (!lamp.is_part()) facing.trace_shadows(lamp, *scene_.surfaces);
+        if (!lamp.is_part()) facing.trace_shadows(lamp, samples, 0, *scene_.surfaces);
         columns.take_emitter(j);
         for (std::size_t n = 0; n < facing.samples.size(); ++n) {
             const std::size_t i = facing.samples[n];

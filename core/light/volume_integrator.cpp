@@ -337,7 +337,7 @@ void VolumeIntegrator::visit_nodes(const Ray& ray, std::span<const double> dista
 void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double begin,
                                   std::span<const double> distances, Workspace& w) const {
     const Lamp& lamp = (*scene_.emitters)[emitter];
-    const LampPassage passage(ray, lamp);
+    const LampPassage passage = lamp.passage(ray);
     double max_distance = distances.back();
     if (min_attenuation_ > 0)
         max_distance = std::min(

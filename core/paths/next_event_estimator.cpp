@@ -81,7 +81,7 @@ void InScatterSampler::prepare(const WaterOptics& optics, const ScatteringTables
     for (std::size_t j = 0; j < lamps.size(); ++j) {
         const Interval lit = lamps[j].beam(segment.ray, {0, segment.length});
         if (!(lit.length() > 0)) continue;
-        LampPassage passage(segment.ray, lamps[j]);
+        LampPassage passage = lamps[j].passage(segment.ray);
         if (passage.parallel) {
             Candidate candidate = parallel_candidate(optics, tables, segment, j, passage, lit);
             const double weight = candidate.mass * candidate.interval.effective_length() *

@@ -15,11 +15,6 @@ namespace {
 // Surfaces that a change does not move are hit again at the same distance, up to single precision.
 constexpr double k_same_place = 1e-4;
 
-bool has_same_origin(const Lamp& a, const Lamp& b) {
-    if (a.sunlight() != nullptr && b.sunlight() != nullptr) return *a.sunlight() == *b.sunlight();
-    return a.position() == b.position();
-}
-
 }  // namespace
 
 ChangedScenes::Side::Side(const LitScene& of)
@@ -317,7 +312,9 @@ void PathScores::add_depth(const PathContribution& contribution, std::size_t cha
     const Lamp& lamp_less = (*less.scene.emitters)[contribution.emitter];
     const Lamp& lamp_more = (*more.scene.emitters)[contribution.emitter];
     const bool is_field_same = less.has_same_field && more.has_same_field;
-    const bool is_same = is_field_same && has_same_origin(lamp_less, lamp_more);
+    const Point3 origin_less = lamp_less.origin(contribution.place);
+    const Point3 origin_more = lamp_more.origin(contribution.place);
+    const bool is_same = is_field_same && origin_less == origin_more;
     double path_length = 0;  // of the segment before, if the contribution's columns include it
     if (!contribution.columns.empty()) {
         const Point3& from = vertices_[static_cast<std::size_t>(contribution.vertex)].position;
@@ -327,11 +324,11 @@ void PathScores::add_depth(const PathContribution& contribution, std::size_t cha
         less_.assign(contribution.columns.begin(), contribution.columns.end());
         more_ = less_;
     } else {
-        find_column(less, lamp_less.origin(contribution.place), contribution.place, less_);
+        find_column(less, origin_less, contribution.place, less_);
         if (is_same)
             more_ = less_;
         else
-            find_column(more, lamp_more.origin(contribution.place), contribution.place, more_);
+            find_column(more, origin_more, contribution.place, more_);
         if (!contribution.columns.empty()) {
             if (!is_field_same) {
                 const Point3& from =

@@ -130,7 +130,7 @@ void PathTracer::begin(const Ray& ray, const SurfaceHit* hit, std::span<const do
     segment.transmittance = {};
     if (hit) optics.transmittances(water.length, scratch.point.column, segment.transmittance);
     scratch.passages.clear();
-    for (const Lamp& lamp : *optics.scene().emitters) scratch.passages.emplace_back(ray, lamp);
+    for (const Lamp& lamp : *optics.scene().emitters) scratch.passages.push_back(lamp.passage(ray));
     place_intervals(scratch.passages, segment);
     weigh_intervals(surface_light, segment);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <iostream>
+#include <memory>
 #include <numbers>
 #include <tuple>
 #include <utility>
@@ -14,6 +15,7 @@
 
 #include "camera/camera.h"
 #include "core/base/numerics.h"
+#include "core/light/point_emitter.h"
 #include "core/light/reference_integrator.h"
 #include "core/light/surface_lighting.h"
 #include "core/passes/pixel_renderer.h"
@@ -472,6 +474,7 @@ double scattered_by_surface(const TestScene& scene, const LampExtentDesc& extent
     };
     const double area = LampFrame{extent, {}, {}}.area();
     const Lamp whole = scene.assembled().lamps[0];
+    const LampProfile& profile = dynamic_cast<const PointEmitter&>(whole.emitter()).profile();
     std::vector<Lamp> points;
     for (int i = 0; i < k_angles; ++i) {
         const double angle = 2 * pi * (i + 0.5) / k_angles;
@@ -482,8 +485,9 @@ double scattered_by_surface(const TestScene& scene, const LampExtentDesc& extent
                 const double length = chord.length() / 4;
                 const double r = chord.begin + (piece + node.position) * length;
                 const Point3 at = crossing + Vector3(r * std::cos(angle), r * std::sin(angle), 0);
-                points.push_back(
-                    whole.emitter(0, at, node.weight * length * r * 2 * pi / k_angles / area));
+                const double fraction = node.weight * length * r * 2 * pi / k_angles / area;
+                points.emplace_back(whole.name(), std::make_shared<PointEmitter>(at, profile),
+                                    fraction * whole.axis_intensity(), 0, fraction);
             }
     }
     LitScene lit = scene.assembled().lit();

@@ -203,7 +203,7 @@ PathScene evenly_scattering(const Vector3& direction, double g) {
     Spectrum irradiance{};
     irradiance[0] = 2;
     const Lamp lamp("sun", Sunlight{glm::normalize(direction), k_sea_level}, irradiance);
-    scene.lamps.push_back(lamp.emitter(0, lamp.sunlight()->direction, 1));
+    scene.lamps.push_back(lamp);
     return scene;
 }
 

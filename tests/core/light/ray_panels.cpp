@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/base/numerics.h"
+#include "core/light/lamp.h"
 
 namespace uw {
 namespace {
@@ -45,11 +46,11 @@ TEST(RayPanels, ThroughTheLampScatteringIsStraightOnOrBack) {
 TEST(RayPanels, AgainstASunScatteringIsStraightOn) {
     const WaterSurfaceDesc surface{{0, 0, 0}, {0, 1, 0}};
     const Lamp overhead("sun", {{0, -1, 0}, surface}, Spectrum{});
-    const LampPassage up({{0, -5, 0}, {0, 1, 0}}, overhead);
+    const LampPassage up = overhead.passage({{0, -5, 0}, {0, 1, 0}});
     EXPECT_EQ(up.half_tangent(1, up.radius(1)), 0);
     EXPECT_EQ(up.radius(1), 4);  // the light's way from the surface
     EXPECT_EQ(up.rate(), 0);     // what the ray comes nearer to it, the light has less to go
-    const LampPassage across({{0, -5, 0}, {1, 0, 0}}, overhead);
+    const LampPassage across = overhead.passage({{0, -5, 0}, {1, 0, 0}});
     EXPECT_NEAR(across.half_tangent(1, across.radius(1)), 1, 1e-15);  // by a right angle
 }
 

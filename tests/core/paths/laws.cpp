@@ -108,11 +108,7 @@ TEST(PathLaws, LightOfAnAreaLampIsTheSumOverItsPoints) {
     PathScene together = lit_scene(k_three_bands);
     together.lamps.clear();
     for (std::size_t i = 0; i < points.size(); ++i)
-        together.lamps.push_back(
-            apart.lamps[i].emitter(i < 3 ? 0 : 1, points[i], i < 3 ? 1.0 / 3 : 0.5));
-    // emitter() has dimmed them once more.
-    for (std::size_t i = 0; i < points.size(); ++i)
-        together.lamps[i] = together.lamps[i].brightened(i < 3 ? 3 : 2);
+        together.lamps.push_back(apart.lamps[i].with_index(i < 3 ? 0 : 1));
     ASSERT_EQ(together.lit().lamp_count(), 2U);
     const auto of_lamps = ray_batches(together, some_ray(), 1);
     const auto of_points = ray_batches(apart, some_ray(), 2);
@@ -154,7 +150,7 @@ TEST(PathLaws, EachLampHasItsOwnLight) {
     for (const std::size_t lamp : {0U, 1U}) {
         PathScene alone({{0.1, 0.3}}, 0.9);
         alone.set_surfaces(box_and_plane(1));
-        alone.lamps.push_back(both.lamps[lamp].emitter(0, both.lamps[lamp].position(), 1));
+        alone.lamps.push_back(both.lamps[lamp].with_index(0));
         const BatchMeans truth = means_of(ray_batches(alone, ray, 5 + lamp),
                                           [](const TermSums& sums) { return sums.total(0); });
         deviations.add("lamp", by_lamp[lamp], truth.mean(), truth.error());

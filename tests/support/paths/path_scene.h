@@ -63,7 +63,7 @@ struct PathScene {
                   const LampProfile& profile = IsotropicProfile()) {
         const Spectrum bands = per_band(band_count(), [&](std::size_t) { return intensity; });
         const Lamp lamp("lamp" + std::to_string(lamps.size()), position, profile, bands);
-        lamps.push_back(lamp.emitter(lamps.size(), position, 1));
+        lamps.push_back(lamp.with_index(lamps.size()));
     }
 
     std::size_t band_count() const { return medium.wavelengths_nm.size(); }
