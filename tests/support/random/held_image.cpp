@@ -179,7 +179,7 @@ class HeldImage {
         const bool is_diffuse = std::ranges::none_of(desc_.geometry, [](const GeometryDesc& g) {
             return g.type == GeometryDesc::Type::file;
         });
-        const std::vector<double> of_spheres = max_of_spheres(desc_);
+        const std::vector<double> of_lamps = max_radiance_of_lamps(desc_);
         const double brightest = brightest_total();
         for_pixels([&](int x, int y) {
             const int first = plan_.first_channel(Layer::position);
@@ -201,7 +201,7 @@ class HeldImage {
                 if (is_diffuse)
                     check(Layer::clean,
                           value(Layer::albedo, band, x, y) * most[b] / std::numbers::pi +
-                              of_spheres[b]);
+                              of_lamps[b]);
                 // Within what the fast integrator promises (hold_reference).
                 if (max_scattered)
                     check(Layer::backscatter, 1.02 * (*max_scattered)[b] + 0.01 * brightest);

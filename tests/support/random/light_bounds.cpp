@@ -69,14 +69,21 @@ std::vector<double> max_irradiance(const SceneDesc& scene, const Point3& at, dou
     return most;
 }
 
-std::vector<double> max_of_spheres(const SceneDesc& scene) {
+std::vector<double> max_radiance_of_lamps(const SceneDesc& scene) {
     std::vector<double> most(scene.water.bands_nm.size());
     for (const LampDesc& lamp : scene.lamps) {
-        if (!lamp.extent || lamp.extent->shape != LampExtentDesc::Shape::sphere) continue;
-        const double area = k_pi * lamp.extent->radius * lamp.extent->radius;
+        if (!lamp.extent) continue;
+        const bool is_round = lamp.extent->shape != LampExtentDesc::Shape::rectangle;
+        const double area = is_round ? k_pi * lamp.extent->radius * lamp.extent->radius
+                                     : lamp.extent->width * lamp.extent->height;
+        // A flat lamp has I(theta) / (A cos theta), which has no bound where I falls more slowly
+        // than the cosine.
+        const auto* cosine = std::get_if<CosineProfileDesc>(&lamp.profile);
+        const bool is_bounded =
+            lamp.extent->shape == LampExtentDesc::Shape::sphere || (cosine && cosine->fwhm <= 120);
         for (std::size_t band = 0; band < most.size(); ++band) {
             const double intensity = max_intensity(lamp, band);
-            if (intensity > 0) most[band] += intensity / area;
+            if (intensity > 0) most[band] += is_bounded ? intensity / area : k_unknown;
         }
     }
     return most;

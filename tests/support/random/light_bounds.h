@@ -15,8 +15,9 @@ namespace uw::test {
 /// `at` may be off, allow; infinite where that is 0, or how bright it is at most is not known.
 std::vector<double> max_irradiance(const SceneDesc& scene, const Point3& at, double error);
 
-/// The greatest radiance of spheres that are seen themselves, per band: I/(pi r^2) of each.
-std::vector<double> max_of_spheres(const SceneDesc& scene);
+/// The greatest radiance of lamps that are seen themselves, per band: I/A of the area that they
+/// show; infinite where that is not known.
+std::vector<double> max_radiance_of_lamps(const SceneDesc& scene);
 
 /// The greatest radiance that uniform water scatters once towards the origin of `ray`, without end,
 /// per band; none for scenes of which this is not known. Of a lamp at h metres from the ray it is
