@@ -277,7 +277,7 @@ def cpp_pages():
     texts = {page: "\n\n".join(parts) + "\n" for page, parts in pages.items()}
     texts["cpp.md"] = (
         "# C++ headers\n\nWhat `cmake --install` installs, by folders ([how to build with it]"
-        "(install.md#in-a-c-program), [how the rooms depend on each other](design.md)). Everything is in "
+        "(install.md#in-a-c-program), [how the folders depend on each other](design.md)). Everything is in "
         "the namespace `uw`. Begin with `render/renderer.h` in [render](cpp-render.md). Between minor "
         "versions [anything may change](stability.md).\n\n" + "\n".join(first) + "\n")
     return texts

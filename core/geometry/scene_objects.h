@@ -59,7 +59,9 @@ struct MeshObject {
     Point3 corner(std::uint32_t triangle, int k) const;
 };
 
-/// One object of several that show the same mesh.
+/// One object of several that show the same mesh. Embree traces the mesh in its own space;
+/// crossings, normals and tangents are transformed corner by corner in double precision, so that
+/// the object looks as a copy of the mesh would.
 struct MeshInstance {
     const MeshObject* object = nullptr;
     MeshTransform transform;

@@ -107,7 +107,8 @@ class FineParticles {
 /// image except at the edges of shadows and surfaces, so it is integrated at the nodes of a lattice
 /// and interpolated between them, bilinearly over the image and by a parabola over distance. Where
 /// the nodes of the next finer lattice do not confirm the interpolation, the lattice is refined,
-/// down to single pixels. Reused between tiles.
+/// down to single pixels. Shadows in the water that are narrower than the distance between nodes
+/// may be missed. Reused between tiles.
 class InScatterLattice {
   public:
     /// Pixels along a tile's edge. Tiles are aligned to multiples of it in the full image, so that

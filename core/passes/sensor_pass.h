@@ -9,7 +9,8 @@
 namespace uw {
 
 /// Turns the light of the finished image into the digital numbers of its camera's sensor, if the
-/// layer is requested.
+/// layer is requested. They are stored as 32-bit floats, which hold whole numbers of 16 bits
+/// exactly, so that a film needs no second kind of channel.
 class SensorPass final : public Pass {
   public:
     /// `frame`: the number of the image, on which the noise depends.

@@ -9,8 +9,8 @@
 
 namespace uw {
 
-/// The light of a lamp or sun, splatted into the scene (docs/design.md): a map of the shadows of
-/// surfaces and one of columns, either of which may be shared with others.
+/// The light of a lamp or sun, splatted into the scene: a map of the shadows of surfaces and one of
+/// columns, either of which may be shared with others.
 template <class Shadows, class Columns>
 class SplattedLight : public DeepShadow {
   public:

@@ -125,7 +125,7 @@ TEST_F(ImageLayers, DraftsAreWithinThreePerCentAndFinalImagesCloseToExact) {
     };
     const ImageFile exact = render_as("exact");
     // The RMS relative to the mean: what `--help` says of drafts, and what the lattice of rays
-    // allows (docs/design.md).
+    // allows (InScatterLattice).
     for (const auto& [quality, tolerance] : {std::pair("draft", 0.03), std::pair("final", 1e-3)}) {
         const ImageFile image = render_as(quality);
         double squares = 0, mean = 0;
