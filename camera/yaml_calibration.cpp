@@ -14,7 +14,7 @@ namespace uw {
 
 std::vector<ConfigValue> matrix_numbers(const ConfigValue& value, std::string_view hint) {
     if (value.node().kind != ConfigNode::Kind::map) return value.list(hint);
-    const auto numbers = require_value(value, "data", hint).list(hint);
+    std::vector<ConfigValue> numbers = require_value(value, "data", hint).list(hint);
     const ConfigNode* const rows = value.node().find("rows");
     const ConfigNode* const cols = value.node().find("cols");
     if (rows == nullptr || cols == nullptr) return numbers;

@@ -23,6 +23,33 @@ is_ubuntu() {  # release
     [[ ! $1 =~ ^(bookworm|trixie|forky|sid|testing|stable)$ ]]
 }
 
+# Ends the script with 77, and why, where this user, system or network cannot make and enter bare systems.
+require_bare_systems() {  # release or folder...
+    local why='' place release mirror
+    place=$(mktemp -d)
+    if ((EUID != 0)); then
+        why="bare systems need root"
+    elif ! command -v debootstrap >/dev/null; then
+        why="debootstrap is missing: scripts/install-packages --release"
+    elif ! mknod "$place/null" c 1 3 2>/dev/null || ! mount -t proc proc "$place" 2>/dev/null; then
+        why="this root may not make devices and mount, as in a container without privileges"
+    else
+        umount "$place"
+    fi
+    rm -rf --one-file-system "$place"
+    for release in "$@"; do
+        [[ -z $why && ! -d $release ]] || break
+        mirror=$(mirror_of Debian http://deb.debian.org/debian)
+        ! is_ubuntu "$release" || mirror=$(mirror_of Ubuntu http://archive.ubuntu.com/ubuntu)
+        wget --quiet --spider --timeout=20 --tries=2 "${mirror%/}/dists/$release/Release" ||
+            why="there is no ${mirror%/}/dists/$release/Release: is there a network?"
+    done
+    if [[ -n $why ]]; then
+        echo "$(basename "$0"): $why" >&2
+        exit 77
+    fi
+}
+
 make_bare_system() {  # release folder
     local release=$1 folder=$2 mirror security
     local keys=/usr/share/keyrings/ubuntu-archive-keyring.gpg

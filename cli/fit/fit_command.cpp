@@ -317,6 +317,7 @@ void run_fit(const FitArguments& a) {
         observations = std::move(seen);
     } else if (a.board) {
         std::vector<std::filesystem::path> pictures_of_it;
+        pictures_of_it.reserve(seen_pictures.size());
         for (const ObservedPicture& picture : seen_pictures) pictures_of_it.push_back(picture.file);
         PointTable corners = find_board_corners(pictures_of_it, *a.board, warn);
         if (!a.corners.empty()) files.add(a.corners, point_csv(corners));

@@ -403,7 +403,9 @@ class OpenFile {
         if (descriptor_ >= 0) ::close(descriptor_);
     }
     OpenFile(const OpenFile&) = delete;
+    OpenFile(OpenFile&&) = delete;
     OpenFile& operator=(const OpenFile&) = delete;
+    OpenFile& operator=(OpenFile&&) = delete;
 
     /// The number of bytes read, 0 at the end; negative: it cannot be read.
     ::ssize_t read(char* to, std::size_t most) const {

@@ -10,7 +10,7 @@
 /// the widest that the machine supports. Results are bit-identical: nothing is contracted or
 /// reordered. Not under the thread sanitizer, whose code would run in the loader before it is
 /// ready, nor where the compiler compares all definitions of one name, which takes the versions
-/// for different ones (scripts/test --definitions).
+/// for different ones (scripts/check-all definitions).
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_THREAD__) && !defined(UWVDB_ONE_DEFINITION)
 #define UWVDB_VECTOR_CLONES [[gnu::target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")]]

@@ -43,7 +43,10 @@ double PathRandom::next() {
     const auto dimension = static_cast<std::uint64_t>(dimension_++);
     const bool in_lattice = dimension < k_generator.size();
     std::uint64_t bits = mixed_bits((in_lattice ? seed_ : stream_) + k_bit_mixing_step * dimension);
-    if (in_lattice) bits += std::uint64_t{point_ * k_generator[dimension]} << 32U;
+    if (in_lattice) {
+        const std::uint32_t coordinate = point_ * k_generator[dimension];  // modulo 2^32
+        bits += std::uint64_t{coordinate} << 32U;
+    }
     return static_cast<double>(bits >> 11U) * 0x1p-53;
 }
 

@@ -394,8 +394,8 @@ void EmbreeScene::attach_instances() const {
         for (int column = 0; column < 4; ++column) {
             const Vector3 values = column < 3 ? map.linear()[column] : map.offset();
             for (int row = 0; row < 3; ++row) {
-                columns[static_cast<std::size_t>(3 * column + row)] =
-                    static_cast<float>(values[row]);
+                const int place = 3 * column + row;
+                columns[static_cast<std::size_t>(place)] = static_cast<float>(values[row]);
             }
         }
         rtcSetGeometryTransform(geometry.get(), 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,

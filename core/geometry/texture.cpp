@@ -100,7 +100,8 @@ double Texture::decoded(float encoded) const {
     const float value = encoded > 0 ? std::min(encoded, 1.0F) : 0.0F;
     if (!is_encoded_) return value;
     const std::vector<float>& table = linear_of_16_bits();
-    return double{table[static_cast<std::size_t>(65535 * value + 0.5F)]};
+    const float rounded = 65535 * value + 0.5F;
+    return double{table[static_cast<std::size_t>(rounded)]};
 }
 
 /// Fills a level with the means over squares of the file's pixels, line after line of them.
@@ -161,16 +162,16 @@ void Texture::texels_of_file(const Level& level, int x, int y, int columns, int 
     const float* at = values.data();
     for (int j = y0; j < y1; ++j)
         for (int i = x0; i < x1; ++i, at += channels) {
-            Rgb& texel =
-                texels[static_cast<std::size_t>((j - y0) / step * columns + (i - x0) / step)];
+            const int place = (j - y0) / step * columns + (i - x0) / step;
+            Rgb& texel = texels[static_cast<std::size_t>(place)];
             for (std::size_t c = 0; c < 3; ++c) texel[c] += decoded(at[channels < 3 ? 0 : c]);
         }
     for (int row = 0; row < rows; ++row)
         for (int column = 0; column < columns; ++column) {
             const int area = (std::min(x0 + (column + 1) * step, x1) - x0 - column * step) *
                              (std::min(y0 + (row + 1) * step, y1) - y0 - row * step);
-            for (double& value : texels[static_cast<std::size_t>(row * columns + column)])
-                value /= area;
+            const int place = row * columns + column;
+            for (double& value : texels[static_cast<std::size_t>(place)]) value /= area;
         }
 }
 
@@ -218,6 +219,7 @@ Texture::Level Texture::halved(const Level& level) {
     half.rgb.reserve(3 * static_cast<std::size_t>(half.width) *
                      static_cast<std::size_t>(half.height));
     std::vector<HalvedTexel> columns;
+    columns.reserve(static_cast<std::size_t>(half.width));
     for (int x = 0; x < half.width; ++x) columns.emplace_back(x, level.width, half.width);
     for (int y = 0; y < half.height; ++y) {
         throw_if_stopped();

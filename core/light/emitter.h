@@ -101,9 +101,11 @@ class Emitter {
     }
 
   protected:
-    explicit Emitter(std::optional<LampPatch> patch) : patch_(std::move(patch)) {}
+    explicit Emitter(std::optional<LampPatch> patch) : patch_(patch) {}
     Emitter(const Emitter&) = default;
+    Emitter(Emitter&&) = default;
     Emitter& operator=(const Emitter&) = default;
+    Emitter& operator=(Emitter&&) = default;
 
     /// Precondition: `other` is of the same class.
     virtual bool equals(const Emitter& other) const = 0;

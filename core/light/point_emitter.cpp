@@ -44,7 +44,7 @@ LampPassage passage_of(const Point3& point, double squared_offset, const Ray& ra
 
 PointEmitter::PointEmitter(const Point3& position, LampProfile profile,
                            std::optional<LampPatch> patch)
-    : Emitter(std::move(patch)), position_(position), profile_(std::move(profile)) {}
+    : Emitter(patch), position_(position), profile_(std::move(profile)) {}
 
 std::string_view PointEmitter::profile_name() const {
     return std::visit([](const auto& profile) { return profile.k_name; }, profile_);

@@ -118,7 +118,9 @@ class Pass {
     explicit Pass(std::optional<Stage> stage, Of of = Of::light) : stage_(stage), of_(of) {}
     virtual ~Pass() = default;
     Pass(const Pass&) = delete;
+    Pass(Pass&&) = delete;
     Pass& operator=(const Pass&) = delete;
+    Pass& operator=(Pass&&) = delete;
 
     std::optional<Stage> stage() const { return stage_; }
     Of of() const { return of_; }

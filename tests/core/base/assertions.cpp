@@ -1,5 +1,5 @@
 // ctest labels: unit slow
-// Assertions are on in the presets dev and asan alone, which the full run builds.
+// Assertions are on in the preset asan alone, of which a suite runs this.
 #include <gtest/gtest.h>
 
 #include "core/base/grid2d.h"
@@ -9,7 +9,7 @@ namespace {
 
 TEST(AssertionsDeathTest, APlaceOutsideAGridIsAFault) {
 #ifdef NDEBUG
-    FAIL() << "this build has no assertions; use the preset dev";
+    FAIL() << "this build has no assertions; use the preset asan";
 #endif
     const Grid2D<int> grid(3, 2);
     EXPECT_DEATH(static_cast<void>(grid(3, 0)), "x < width_");
