@@ -76,6 +76,11 @@ void Renderer::set_scene(ImageScene scene) {
     colour_.reset();
 }
 
+void Renderer::set_scene(AssembledScene scene) {
+    set_scene(scene.image);
+    scene_ = std::move(scene);
+}
+
 void Renderer::build() {
     if (!scene_)
         scene_ = assemble_scene(
@@ -117,14 +122,6 @@ LightTransport Renderer::make_transport() {
 std::optional<LightLeftOut> Renderer::light_left_out() {
     build();
     return estimate_light_left_out(*scene_);
-}
-
-void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
-    assemble();
-    light_.clear();
-    scene_->scattering = nullptr;  // those of the unchanged water
-    change(*scene_);
-    image_ = scene_->image;
 }
 
 void Renderer::drop_light() {

@@ -129,12 +129,10 @@ TEST_F(LeftOut, IsBoundedWork) {
         std::size_t rays = 0;
         with_threads(threads, [&] {
             renderer_.set_scene(SceneDesc(desc_));
-            std::shared_ptr<const CountedSurfaces> counted;
-            renderer_.edit([&](AssembledScene& scene) {
-                counted = std::make_shared<CountedSurfaces>(scene.surfaces);
-                scene.surfaces = counted;
-            });
-            renderer_.light_left_out();  // none where all is dark
+            AssembledScene scene = renderer_.assemble();
+            const auto counted = std::make_shared<const CountedSurfaces>(scene.surfaces);
+            scene.surfaces = counted;
+            estimate_light_left_out(scene);  // none where all is dark
             rays = counted->rays();
         });
         return rays;
