@@ -101,6 +101,18 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const RaySource& rays,
             matchers};
 }
 
+Rendering make_rendering(const AssembledScene& scene, const RaySource& rays,
+                         const LightTransport& transport,
+                         std::span<const std::shared_ptr<const DeepShadow>> light,
+                         const ImageTarget& target, const PointMatchers& matchers) {
+    return {target,
+            scene.desc(),
+            scene.image.time().value_or(0),
+            pixel_renderer(scene, rays, transport, in_scatter_parts(target.plan), matchers),
+            light,
+            scene.snow.get()};
+}
+
 std::vector<ColourGroup> colour_groups_of(const SceneDesc& scene) {
     const bool is_draft = scene.render.quality == RenderDesc::Quality::draft;
     return colour_groups(scene.camera, scene.water.bands_nm, is_draft ? 1 : k_shared_rays);
