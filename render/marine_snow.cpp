@@ -194,9 +194,7 @@ void SnowLighting::radiance(const Point3& x, const Ray& ray, double distance,
                             std::span<double> radiance) const {
     const std::vector<Lamp>& emitters = *scene_.emitters;
     const std::size_t constituents = scene_.medium->constituents.size();
-    thread_local std::vector<double> to_camera, column;
-    to_camera.assign(constituents, 0.0);
-    column.resize(constituents);
+    std::vector<double> to_camera(constituents), column(constituents);
     if (constituents > 0) scene_.field->column(ray.origin, x, to_camera);
     std::ranges::fill(radiance, 0.0);
     for (std::size_t j = 0; j < emitters.size(); ++j) {
@@ -354,9 +352,8 @@ void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
     if (!is_within) end = end_of_sight();
     if (end <= distance) return;
     const std::size_t bands = scene.desc.reflectance.size();
-    thread_local std::vector<double> radiance;
-    radiance.resize(bands);
-    scene.lighting.radiance(x, ray, distance, radiance);
+    Spectrum radiance;
+    scene.lighting.radiance(x, ray, distance, radiance.first(bands));
     // The coefficients include the attenuation by the particles in front of this one, which are
     // also drawn over it: undo the former.
     const double factor =
@@ -391,7 +388,7 @@ void place_layer(const SnowPlacing& scene, const CellLayer& layer, const PixelWi
         first[i] = cell_of(bounds.min[axis] - margin - moved[axis], size_class.edge);
         last[i] = cell_of(bounds.max[axis] + margin - moved[axis], size_class.edge);
     }
-    thread_local std::vector<SnowParticle> particles;
+    std::vector<SnowParticle> particles;
     for (std::int64_t j = first[0]; j <= last[0]; ++j)
         for (std::int64_t k = first[1]; k <= last[1]; ++k) {
             const SnowCell cell{layer.first, j, k};

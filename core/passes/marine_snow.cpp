@@ -200,14 +200,14 @@ void BeyondSnow::add_beyond(const Ray& ray, double begin, std::span<const double
     const double from = std::max(begin, parts_.front().range);
     const double end = distances.back();
     if (!(end > from)) return;
-    thread_local std::vector<double> stops;
-    thread_local InScatter light;
-    stops.clear();
+    std::vector<double> stops;
+    stops.reserve(distances.size() + parts_.size());
     for (const double distance : distances)
         if (distance > from) stops.push_back(distance);
     for (const Part& part : parts_)
         if (part.range > from && part.range < end) stops.push_back(part.range);
     std::ranges::sort(stops);
+    InScatter light;
     snow_->in_scatter_from(ray, from, stops, light);
     const auto up_to = [&](double distance, std::size_t lamp) {
         if (!(distance > from)) return Spectrum{};
