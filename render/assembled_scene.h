@@ -18,7 +18,7 @@
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
 #include "render/image_scene.h"
-#include "render/marine_snow.h"
+#include "render/snow/snow_model.h"
 
 namespace uw {
 

@@ -13,7 +13,7 @@
 #include "core/passes/pixel_pass.h"
 #include "core/passes/sensor_pass.h"
 #include "core/passes/truth_pass.h"
-#include "render/marine_snow.h"
+#include "render/snow/snow_pass.h"
 
 namespace uw {
 

@@ -11,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/geometry_scene.h"
 #include "core/image/image_file.h"
+#include "core/image/preview_exposure.h"
 #include "core/passes/pixel_pass.h"
 #include "render/renderer.h"
 #include "tests/bench/support/measure.h"

@@ -1,4 +1,4 @@
-#include "core/passes/snow_image.h"
+#include "render/snow/snow_image.h"
 
 #include <algorithm>
 #include <cmath>
