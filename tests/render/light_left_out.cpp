@@ -31,7 +31,7 @@ class LeftOut : public testing::Test {
         const std::optional<LightLeftOut> left_out = estimate();
         return left_out_note(renderer_.assembled(), left_out);
     }
-    /// The share of the layer `multiple` in an image of many paths.
+    /// The fraction of the layer `multiple` in an image of many paths.
     double fraction_in_image() {
         SceneDesc all = desc_;
         all.render.integrator = RenderDesc::Integrator::path;

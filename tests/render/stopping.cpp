@@ -132,7 +132,7 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
     }
 };
 
-// A few milliseconds' worth, nowhere more; that of a whole row of pixels would be 65 000 and more.
+// They take a few milliseconds; a whole row of pixels would be 65 000 rays and more.
 TEST_P(Stopping, TakesNoMoreThanSomeRays) {
     constexpr std::size_t k_most = 4096;
     for (const std::size_t until : {1U, 1000U, 200'000U, 5'000'000U, 8'000'000U})
