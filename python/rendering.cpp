@@ -28,6 +28,7 @@
 #include "core/image/image_formats.h"
 #include "core/image/picture_file.h"
 #include "core/image/pixel_image.h"
+#include "core/image/preview_exposure.h"
 #include "python/bindings.h"
 #include "python/scene.h"
 #include "python/watched_task.h"

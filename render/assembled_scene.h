@@ -18,19 +18,22 @@
 #include "media/volumes/load_volumes.h"
 #include "media/water/water_model.h"
 #include "render/image_scene.h"
-#include "render/marine_snow.h"
+#include "render/snow/snow_model.h"
 
 namespace uw {
 
 /// The deep shadow maps of the emitters of a scene, in their order.
 using DeepShadows = std::vector<std::shared_ptr<const DeepShadow>>;
 
-/// The parts of a scene that integrators work on, made from its description.
+/// The parts of a scene that integrators work on, made from its description (assemble_scene). A
+/// scene with a part that no description has, such as water with a measured phase function, is a
+/// copy with another part, which shares all others (Renderer::set_scene). Where the water differs,
+/// `scattering` has to be null.
 struct AssembledScene {
     explicit AssembledScene(ImageScene of) : image(std::move(of)) {}
 
     ImageScene image;  // the scene from which it was made
-    std::unique_ptr<Camera> camera;
+    std::shared_ptr<const Camera> camera;
     WaterModel water;                                    // its coefficients include the snow's mean
     std::shared_ptr<const ScatteringTables> scattering;  // of the water; null: not made yet
     std::shared_ptr<const SnowModel> snow;               // null without snow

@@ -324,19 +324,9 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
     const Camera truth_camera = camera_of_truth(scene.image);
     const auto find_truth = [&](const AssembledScene& then, const LightTransport& transport,
                                 const std::function<bool(int row)>& has_truth) {
-        const PixelRenderer pixels(truth_camera, then.lit(), transport, {}, {},
-                                   SensorModel(then.desc()), {}, rendering.pixels.matchers());
-        Rendering truth{.desc = then.desc(),
-                        .time = then.image.time().value_or(0),
-                        .pixels = pixels,
-                        .light = {},
-                        .snow = nullptr,
-                        .plan = plan,
-                        .colour = rendering.colour,
-                        .film = film,
-                        .progress = rendering.progress,
-                        .reached = rendering.reached,
-                        .has_truth = has_truth};
+        Rendering truth = make_rendering(then, truth_camera, transport, {}, rendering,
+                                         rendering.pixels.matchers());
+        truth.has_truth = has_truth;
         passes.run(Pass::Of::truth, truth);
     };
     const bool truth_differs = exposure.is_rolling() && exposure.moves_surfaces();
@@ -352,18 +342,9 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
         const PixelWindow rows = rows_of_part(exposure, k, needs.whole_image, film.window());
         if (rows.y0 < rows.y1) {
             Film image(film.width(), film.height(), rows, film.channel_names());
-            const PixelRenderer pixels = pixel_renderer(part, transport, in_scatter_parts(plan));
             ImageProgress reached;
-            Rendering of_part{.desc = part.desc(),
-                              .time = part.image.time().value_or(0),
-                              .pixels = pixels,
-                              .light = light,
-                              .snow = part.snow.get(),
-                              .plan = plan,
-                              .colour = rendering.colour,
-                              .film = image,
-                              .progress = tell,
-                              .reached = reached};
+            Rendering of_part = make_rendering(part, *part.camera, transport, light,
+                                               {plan, rendering.colour, image, tell, reached});
             run_light_passes(part, passes, of_part);
             reached_by_parts.add(reached);
             mean.add(image, [&](int row) { return exposure.fraction(k, row); });

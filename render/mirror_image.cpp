@@ -40,25 +40,16 @@ void run_light_passes(const AssembledScene& scene, PassList& passes, Rendering& 
     passes.run(Pass::Of::light, rendering);
     if (!has_mirror) return;
     const MirroredView view(rays, scene.lit());
-    PixelRenderer pixels = pixel_renderer(scene, view, rendering.pixels.transport(),
-                                          rendering.pixels.in_scatter().parts());
-    pixels.set_weight([&](int x, int y) { return view.arriving(x, y); });
     Film film(rendering.film.width(), rendering.film.height(), rendering.film.window(),
               rendering.film.channel_names());
     const StageProgressCallback progress = [&](Stage stage, double fraction) {
         rendering.progress(Stage::reflection, stage == Stage::render ? fraction : 0);
     };
     ImageProgress reached;
-    Rendering mirrored{.desc = rendering.desc,
-                       .time = rendering.time,
-                       .pixels = pixels,
-                       .light = rendering.light,
-                       .snow = rendering.snow,
-                       .plan = rendering.plan,
-                       .colour = rendering.colour,
-                       .film = film,
-                       .progress = progress,
-                       .reached = reached};
+    Rendering mirrored =
+        make_rendering(scene, view, rendering.pixels.transport(), rendering.light,
+                       {rendering.plan, rendering.colour, film, progress, reached});
+    mirrored.pixels.set_weight([&](int x, int y) { return view.arriving(x, y); });
     passes.run(Pass::Of::light, mirrored);
     add_mirrored(film, rendering.plan, rendering.colour, rendering.film);
     rendering.reached.include(reached);

@@ -76,6 +76,11 @@ void Renderer::set_scene(ImageScene scene) {
     colour_.reset();
 }
 
+void Renderer::set_scene(AssembledScene scene) {
+    set_scene(scene.image);
+    scene_ = std::move(scene);
+}
+
 void Renderer::build() {
     if (!scene_)
         scene_ = assemble_scene(
@@ -117,14 +122,6 @@ LightTransport Renderer::make_transport() {
 std::optional<LightLeftOut> Renderer::light_left_out() {
     build();
     return estimate_light_left_out(*scene_);
-}
-
-void Renderer::edit(const std::function<void(AssembledScene&)>& change) {
-    assemble();
-    light_.clear();
-    scene_->scattering = nullptr;  // those of the unchanged water
-    change(*scene_);
-    image_ = scene_->image;
 }
 
 void Renderer::drop_light() {
@@ -241,22 +238,13 @@ void Renderer::render_other_groups(std::span<const ColourGroup> groups,
             with_moved(*scene_, std::move(image), std::move(camera), cache_);
         LightTransport own;
         if (!options.transport) own = make_light_transport(scene, light_, needs_.paths);
-        const PixelRenderer pixels = pixel_renderer(
-            scene, options.transport ? *options.transport : own, in_scatter_parts(*plan_), {});
         const BandColour colour = colour_->of(groups[k].bands);
         const StageProgressCallback progress = progress_of_group(k, groups.size());
         Film film(film_->width(), film_->height(), film_->window(), film_->channel_names());
         ImageProgress reached;
-        Rendering rendering{.desc = scene.desc(),
-                            .time = scene.image.time().value_or(0),
-                            .pixels = pixels,
-                            .light = light_,
-                            .snow = scene.snow.get(),
-                            .plan = *plan_,
-                            .colour = colour,
-                            .film = film,
-                            .progress = progress,
-                            .reached = reached};
+        Rendering rendering =
+            make_rendering(scene, *scene.camera, options.transport ? *options.transport : own,
+                           light_, {*plan_, colour, film, progress, reached});
         render_light(Exposure(scene), scene, passes, rendering);
         take_bands(film, groups[k].bands, *plan_, *film_);
         report_.include(reached);
@@ -280,20 +268,11 @@ void Renderer::render_film(const RenderOptions& options, PassList& passes) {
             "open; give --samples instead");
     const std::vector<ColourGroup> groups = colour_groups_of(scene_->desc());
     report_.colour_groups = groups.size();
-    const PixelRenderer pixels =
-        pixel_renderer(*scene_, transport, in_scatter_parts(*plan_), others.matchers());
     const BandColour colour = groups.size() > 1 ? colour_->of(groups.front().bands) : *colour_;
     const StageProgressCallback progress = progress_of_group(0, groups.size());
-    Rendering rendering{.desc = scene_->desc(),
-                        .time = scene_->image.time().value_or(0),
-                        .pixels = pixels,
-                        .light = light_,
-                        .snow = scene_->snow.get(),
-                        .plan = *plan_,
-                        .colour = colour,
-                        .film = *film_,
-                        .progress = progress,
-                        .reached = report_};
+    Rendering rendering =
+        make_rendering(*scene_, *scene_->camera, transport, light_,
+                       {*plan_, colour, *film_, progress, report_}, others.matchers());
     render_light(exposure, *scene_, passes, rendering);
     render_other_groups(groups, options, passes);
     passes.run(Pass::Of::image, rendering);

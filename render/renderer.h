@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -74,8 +73,9 @@ class Renderer {
 
     /// Sets the scene of the following images. Loads nothing yet.
     void set_scene(ImageScene scene);
-    /// The scene as it was set, or edited since. Precondition of this and all following functions:
-    /// a scene was set.
+    /// Sets a scene that is assembled already.
+    void set_scene(AssembledScene scene);
+    /// The scene that was set. Precondition of this and all following functions: a scene was set.
     const ImageScene& scene() const { return *image_; }
 
     /// Allocates an image and assembles its scene, after which the report has its warnings and its
@@ -95,7 +95,7 @@ class Renderer {
     const RenderReport& report() const { return report_; }
 
     /// @name The parts of an image's scene, for closer inspection
-    /// References to them are valid until the scene is set or edited again.
+    /// References to them are valid until a scene is set again.
     /// @{
 
     /// Loads and builds the scene and places its slabs, unless that has been done.
@@ -115,9 +115,6 @@ class Renderer {
     /// assembles the scene.
     std::optional<LightLeftOut> light_left_out();
 
-    /// Changes the assembled scene directly, for water, volumes and slabs that no description can
-    /// express. The next scene that is set is not affected.
-    void edit(const std::function<void(AssembledScene&)>& change);
     /// Frees the deep shadow maps: the next splat makes all of them anew.
     void drop_light();
     /// @}
@@ -138,7 +135,7 @@ class Renderer {
     DeepShadows light_of(const AssembledScene& scene, const ProgressCallback& progress);
 
     StageProgressCallback progress_;
-    std::optional<ImageScene> image_;      // the scene that was set
+    std::optional<ImageScene> image_;      // the scene that was set, or what it was assembled from
     std::optional<AssembledScene> scene_;  // none: not assembled yet
     SceneCache cache_;
     DeepShadows light_;             // of the scene; empty: not made yet

@@ -10,7 +10,7 @@
 #include "media/volumes/fluid_domain.h"
 #include "media/volumes/level_set_mesh.h"
 #include "media/volumes/stratified_field.h"
-#include "render/marine_snow.h"
+#include "render/snow/snow_model.h"
 
 namespace uw {
 

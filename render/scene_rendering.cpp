@@ -13,7 +13,7 @@
 #include "core/passes/pixel_pass.h"
 #include "core/passes/sensor_pass.h"
 #include "core/passes/truth_pass.h"
-#include "render/marine_snow.h"
+#include "render/snow/snow_pass.h"
 
 namespace uw {
 
@@ -99,6 +99,18 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const RaySource& rays,
             SensorModel(scene.desc()),
             parts,
             matchers};
+}
+
+Rendering make_rendering(const AssembledScene& scene, const RaySource& rays,
+                         const LightTransport& transport,
+                         std::span<const std::shared_ptr<const DeepShadow>> light,
+                         const ImageTarget& target, const PointMatchers& matchers) {
+    return {target,
+            scene.desc(),
+            scene.image.time().value_or(0),
+            pixel_renderer(scene, rays, transport, in_scatter_parts(target.plan), matchers),
+            light,
+            scene.snow.get()};
 }
 
 std::vector<ColourGroup> colour_groups_of(const SceneDesc& scene) {

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +42,14 @@ PixelRenderer pixel_renderer(const AssembledScene& scene, const LightTransport& 
 PixelRenderer pixel_renderer(const AssembledScene& scene, const RaySource& rays,
                              const LightTransport& transport, const InScatterParts& parts = {},
                              const PointMatchers& matchers = {});
+
+/// Sets up an image of `scene` for its passes: its pixels along `rays`, such as those of the
+/// scene's camera, by `transport`. All arguments must outlive the result; `light` may be empty if
+/// no pass needs it.
+Rendering make_rendering(const AssembledScene& scene, const RaySource& rays,
+                         const LightTransport& transport,
+                         std::span<const std::shared_ptr<const DeepShadow>> light,
+                         const ImageTarget& target, const PointMatchers& matchers = {});
 
 /// Returns a warning, one line, if all lamps are too far away for MultipleScatteringPass: its paths
 /// begin at the camera and seldom come close to such lamps, so that a few paths carry nearly all

@@ -23,6 +23,7 @@
 #include "core/base/output_files.h"
 #include "core/base/text.h"
 #include "core/image/picture_file.h"
+#include "core/image/preview_exposure.h"
 #include "core/light/integrator_table.h"
 #include "render/image_scene.h"
 #include "render/renderer.h"

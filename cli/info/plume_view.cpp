@@ -286,10 +286,10 @@ class Drafts {
     }
 
     void set_grids(std::vector<GridVolume> grids) {
-        renderer_.edit([&](AssembledScene& scene) {
-            scene.field = make_field(std::move(grids), scene.water.medium.constituent_count(),
-                                     scene.water.strata);
-        });
+        AssembledScene scene = renderer_.assembled();
+        scene.field = make_field(std::move(grids), scene.water.medium.constituent_count(),
+                                 scene.water.strata);
+        renderer_.set_scene(std::move(scene));
     }
 
     DraftCount& count_;

@@ -22,6 +22,7 @@
 #include "core/base/text.h"
 #include "core/image/colour_view.h"
 #include "core/image/pixel_image.h"
+#include "core/image/preview_exposure.h"
 #include "dataset/completion.h"
 #include "dataset/data_card.h"
 #include "dataset/definition.h"

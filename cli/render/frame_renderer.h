@@ -10,7 +10,7 @@
 #include "cli/render/frame_sequence.h"
 #include "cli/render/render_arguments.h"
 #include "cli/render/run_stats.h"
-#include "render/run/exposure.h"
+#include "core/image/preview_exposure.h"
 #include "render/run/run_engine.h"
 
 namespace uw {

@@ -10,6 +10,7 @@
 #include "core/image/picture_file.h"
 #include "core/image/pixel_image.h"
 #include "core/image/png_file.h"
+#include "core/image/preview_exposure.h"
 #include "render/image_header.h"
 
 namespace uw {

@@ -9,7 +9,7 @@
 #include "cli/command.h"
 #include "cli/render/picture_numbers.h"
 #include "core/image/exr_file.h"
-#include "render/run/exposure.h"
+#include "core/image/preview_exposure.h"
 #include "render/scene_loading.h"
 #include "render/scene_rendering.h"
 

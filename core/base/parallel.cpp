@@ -76,7 +76,8 @@ ThreadLimit::~ThreadLimit() {
 }
 
 void work_in_background() {
-    thread_local const PoolObserver observer;  // it sees who joins in this thread's loops
+    // Of the thread, since TBB shows an observer who joins in the loops of the thread that made it.
+    thread_local const PoolObserver observer;
     yield_to_others();
 }
 

@@ -112,12 +112,12 @@ Photoelectrons::Photoelectrons(const SceneDesc& scene)
         double sum = 0;
         for (std::size_t b = 0; b < bands_; ++b) {
             // The power of a band (docs/colour.md).
-            const double share = mean_width > 0 ? intervals[b].width() / mean_width : 1;
+            const double width_ratio = mean_width > 0 ? intervals[b].width() / mean_width : 1;
             const double middle = 0.5 * (intervals[b].begin + intervals[b].end);
             const double mean =
                 curves.empty() ? efficiency.values[colour][b] * middle
                                : mean_with_wavelength(curves[colour], bands_nm[b], intervals[b]);
-            per_irradiance_[colour][b] = energy_to_count * share * mean;
+            per_irradiance_[colour][b] = energy_to_count * width_ratio * mean;
             sum += mean;
         }
         if (!(sum > 0))

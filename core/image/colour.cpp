@@ -42,8 +42,8 @@ std::vector<std::array<double, 3>> tristimulus_of_bands(std::span<const double> 
     if (!(mean_width > 0)) return xyz;
     for (std::size_t i = 0; i < xyz.size(); ++i) {
         const Xyz mean = mean_matching_functions(intervals[i].begin, intervals[i].end);
-        const double share = intervals[i].width() / mean_width;
-        xyz[i] = {share * mean.x, share * mean.y, share * mean.z};
+        const double ratio = intervals[i].width() / mean_width;
+        xyz[i] = {ratio * mean.x, ratio * mean.y, ratio * mean.z};
     }
     return xyz;
 }
@@ -132,10 +132,10 @@ void BandColour::show_cie1931(std::span<const double> bands_nm, std::span<const 
 }
 
 BandColour BandColour::of(std::span<const std::size_t> bands) const {
-    BandColour share = *this;
-    share.rgb_of_band_ = {};
-    for (const std::size_t band : bands) share.rgb_of_band_[band] = rgb_of_band_[band];
-    return share;
+    BandColour part = *this;
+    part.rgb_of_band_ = {};
+    for (const std::size_t band : bands) part.rgb_of_band_[band] = rgb_of_band_[band];
+    return part;
 }
 
 LinearRgb BandColour::operator()(const Spectrum& radiance) const {
@@ -187,8 +187,8 @@ BandColour camera_colour(const ColourDesc& desc, std::span<const double> bands_n
     for (std::size_t c = 0; c < 3; ++c) {
         const SampledCurve curve = table.curve("wavelength_nm", k_channels[c]);
         for (std::size_t i = 0; i < response.size(); ++i) {
-            const double share = mean_width > 0 ? intervals[i].width() / mean_width : 1;
-            response[i][c] = share * mean_response(curve, bands_nm[i], intervals[i]);
+            const double ratio = mean_width > 0 ? intervals[i].width() / mean_width : 1;
+            response[i][c] = ratio * mean_response(curve, bands_nm[i], intervals[i]);
             of_equal[c] += response[i][c];
             of_white[c] += white[i] * response[i][c];
         }

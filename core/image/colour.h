@@ -75,7 +75,7 @@ class BandColour {
     /// Reads the first `bands` values of `radiance`.
     LinearRgb operator()(const Spectrum& radiance) const;
 
-    /// The share that some of the bands have in the colour: those of all parts of the bands add up.
+    /// What some of the bands contribute to the colour: those of all parts of the bands add up.
     BandColour of(std::span<const std::size_t> bands) const;
 
     /// One line; empty if there is no warning.

@@ -54,14 +54,14 @@ Preview scaled_down(const PixelImage& image, int widest) {
             double area = 0;
             for (int j = down.first(); j < std::min(down.last(), image.height); ++j)
                 for (int i = across.first(); i < std::min(across.last(), image.width); ++i) {
-                    const double share = across.of(i) * down.of(j);
+                    const double weight = across.of(i) * down.of(j);
                     const auto at =
                         static_cast<std::size_t>(j) * static_cast<std::size_t>(image.width) +
                         static_cast<std::size_t>(i);
                     for (std::size_t c = 0; c < 3; ++c)
-                        sum[c] += share * light[at * static_cast<std::size_t>(image.channels) +
-                                                (image.channels < 3 ? 0 : c)];
-                    area += share;
+                        sum[c] += weight * light[at * static_cast<std::size_t>(image.channels) +
+                                                 (image.channels < 3 ? 0 : c)];
+                    area += weight;
                 }
             for (std::size_t c = 0; c < 3; ++c)
                 small.row(y)[static_cast<std::size_t>(x)][c] = encode(sum[c] / area);

@@ -75,39 +75,39 @@ void add_matte_header(MatteOf of, std::span<const std::string> names, ImageMetad
     metadata[key + "manifest"] = manifest.empty() ? "{}" : manifest + "}";
 }
 
-void add_matte(float id, double share, std::vector<Matte>& mattes) {
-    if (id == 0 || !(share > 0)) return;
+void add_matte(float id, double fraction, std::vector<Matte>& mattes) {
+    if (id == 0 || !(fraction > 0)) return;
     const auto same = std::ranges::find(mattes, id, &Matte::id);
     if (same == mattes.end())
-        mattes.push_back({id, share});
+        mattes.push_back({id, fraction});
     else
-        same->share += share;
+        same->fraction += fraction;
 }
 
 void store_mattes(std::vector<Matte>& mattes, std::span<float> channels) {
     std::ranges::sort(mattes, [](const Matte& a, const Matte& b) {
-        return std::tuple(-a.share, a.id) < std::tuple(-b.share, b.id);
+        return std::tuple(-a.fraction, a.id) < std::tuple(-b.fraction, b.id);
     });
     std::ranges::fill(channels, 0.0F);
     for (std::size_t i = 0; i < std::min(mattes.size(), k_matte_ranks); ++i) {
         channels[2 * i] = mattes[i].id;
-        channels[2 * i + 1] = static_cast<float>(mattes[i].share);
+        channels[2 * i + 1] = static_cast<float>(mattes[i].fraction);
     }
 }
 
 void mix_mattes(std::span<const float> more, double weight, std::span<float> mean) {
     std::vector<Matte> mattes;
-    const auto share_in = [](std::span<const float> list, float id) {
+    const auto fraction_in = [](std::span<const float> list, float id) {
         for (std::size_t i = 0; i < list.size(); i += 2)
             if (list[i] == id) return static_cast<double>(list[i + 1]);
         return 0.0;
     };
     for (std::size_t i = 0; i < mean.size(); i += 2) {
         const auto before = static_cast<double>(mean[i + 1]);
-        add_matte(mean[i], before + weight * (share_in(more, mean[i]) - before), mattes);
+        add_matte(mean[i], before + weight * (fraction_in(more, mean[i]) - before), mattes);
     }
     for (std::size_t i = 0; i < more.size(); i += 2)
-        if (share_in(mean, more[i]) == 0)
+        if (fraction_in(mean, more[i]) == 0)
             add_matte(more[i], weight * static_cast<double>(more[i + 1]), mattes);
     store_mattes(mattes, mean);
 }

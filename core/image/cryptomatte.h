@@ -12,10 +12,10 @@
 namespace uw {
 
 /// Cryptomatte (Friedman and Jones 2015; specification 1.2): a pixel holds the identifiers of what
-/// it shows, each with the share of the pixel that it covers, from the largest share on.
+/// it shows, each with the fraction of the pixel that it covers, from the largest fraction on.
 /// Compositors make a matte of any name from them.
 
-/// Identifiers of a pixel in a matte's layer, and the channels for them and their shares.
+/// Identifiers of a pixel in a matte's layer, and the channels for them and their fractions.
 inline constexpr std::size_t k_matte_ranks = 6, k_matte_values = 2 * k_matte_ranks;
 
 /// MurmurHash3_x86_32 of a text, with seed 0.
@@ -38,17 +38,17 @@ void add_matte_header(MatteOf of, std::span<const std::string> names, ImageMetad
 /// What a pixel shows; 0 is nothing.
 struct Matte {
     float id;
-    double share;
+    double fraction;
 };
 
-/// Adds a share to that of the same identifier.
-void add_matte(float id, double share, std::vector<Matte>& mattes);
+/// Adds a fraction to that of the same identifier.
+void add_matte(float id, double fraction, std::vector<Matte>& mattes);
 
-/// Writes the largest shares in the order of Cryptomatte, and 0 into the channels left. Sorts
+/// Writes the largest fractions in the order of Cryptomatte, and 0 into the channels left. Sorts
 /// `mattes`.
 void store_mattes(std::vector<Matte>& mattes, std::span<float> channels);
 
-/// Makes of a mean that with `more`, whose weight in it is `weight`. Shares that are the same in
+/// Makes of a mean that with `more`, whose weight in it is `weight`. Fractions that are the same in
 /// both stay as they are, to the bit.
 void mix_mattes(std::span<const float> more, double weight, std::span<float> mean);
 

@@ -53,19 +53,19 @@ inline constexpr auto k_layer_count = static_cast<std::size_t>(Layer::count);
 /// What a layer holds, which decides how it is stored, and what becomes of it where an image is a
 /// mean over light paths or over the time of an exposure.
 enum class LayerContent {
-    light,   ///< radiance: a mean over paths and over an exposure
-    exact,   ///< light that no path estimates, or its error: of an exposure, not of paths
-    share,   ///< a fraction, not light: a mean over an exposure
-    point,   ///< ground truth of the point that a pixel's centre sees; 0 where it sees none
-    matte,   ///< what the pixel shows and how much of each: `all` leaves it out
-    match,   ///< where that point is in another image: `all` leaves it out
-    number,  ///< the sensor's
+    light,     ///< radiance: a mean over paths and over an exposure
+    exact,     ///< light that no path estimates, or its error: of an exposure, not of paths
+    fraction,  ///< from 0 to 1, not light: a mean over an exposure
+    point,     ///< ground truth of the point that a pixel's centre sees; 0 where it sees none
+    matte,     ///< what the pixel shows and how much of each: `all` leaves it out
+    match,     ///< where that point is in another image: `all` leaves it out
+    number,    ///< the sensor's
 };
 
 /// Whether it is of all of an exposure, not of its middle.
 constexpr bool is_of_exposure(LayerContent content) {
     return content == LayerContent::light || content == LayerContent::exact ||
-           content == LayerContent::share || content == LayerContent::matte;
+           content == LayerContent::fraction || content == LayerContent::matte;
 }
 
 /// All that is said of a layer besides how it is filled.
@@ -120,9 +120,9 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::error, LayerContent::exact, "error", "", layer_hints::k_error},
     {Layer::irradiance, LayerContent::exact, "irradiance"},
     {Layer::exitance, LayerContent::exact, "exitance"},
-    {Layer::lit, LayerContent::share, "lit", "V"},
+    {Layer::lit, LayerContent::fraction, "lit", "V"},
     {Layer::clean, LayerContent::exact, "clean"},
-    {Layer::transmittance, LayerContent::share, "transmittance"},
+    {Layer::transmittance, LayerContent::fraction, "transmittance"},
     {Layer::albedo, LayerContent::point, "albedo"},
     {Layer::depth, LayerContent::point, "depth", "Z"},
     {Layer::range, LayerContent::point, "range", "V"},
@@ -279,7 +279,7 @@ class LayerPlan {
 
     std::vector<std::string> channel_names_{"R", "G", "B", "A"};
     std::vector<ChannelGroup> groups_{{LayerContent::light, Layer::count, false, 0, 3},
-                                      {LayerContent::share, Layer::count, false, 3, 1}};
+                                      {LayerContent::fraction, Layer::count, false, 3, 1}};
     std::size_t band_count_;
     LayerSet provided_;
     std::array<int, k_layer_count> first_{};

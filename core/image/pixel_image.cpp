@@ -43,9 +43,6 @@ void check_image_size(std::int64_t width, std::int64_t height, int channels,
 
 namespace {
 
-constexpr double k_percentile = 0.99;
-constexpr double k_luminance_of_percentile = 0.8;
-
 /// `encode`: linear to a value of the colour.
 template <class Colour, class Encode>
 Grid2D<Colour> preview_of(const Film& film, double exposure, const Encode& encode) {
@@ -95,52 +92,6 @@ Grid2D<Colour> preview_of(const Film& film, double exposure, const ColourView& v
 }
 
 }  // namespace
-
-namespace {
-
-/// The luminances of the pixels that count, with those that show a lamp or without.
-std::vector<float> luminances_of(const Film& film, bool with_lamps) {
-    const PixelWindow& window = film.window();
-    constexpr float k_not_counted = -std::numeric_limits<float>::infinity();
-    std::vector<float> luminances(static_cast<std::size_t>(window.width()) *
-                                  static_cast<std::size_t>(window.height()));
-    parallel_for(static_cast<std::size_t>(window.height()), [&](std::size_t line) {
-        const int y = window.y0 + static_cast<int>(line);
-        float* out = &luminances[line * static_cast<std::size_t>(window.width())];
-        for (int x = window.x0; x < window.x1; ++x) {
-            const std::span<const float> pixel = film.pixel(x, y);
-            const double brightness = luminance({pixel[k_red], pixel[k_green], pixel[k_blue]});
-            const bool counts = pixel[k_alpha] > 0 && std::isfinite(brightness) &&
-                                (with_lamps || !film.shows_lamp(x, y));
-            *out++ = counts ? static_cast<float>(brightness) : k_not_counted;
-        }
-    });
-    std::erase(luminances, k_not_counted);
-    return luminances;
-}
-
-}  // namespace
-
-std::optional<double> automatic_exposure(const Film& film) {
-    std::vector<float> luminances = luminances_of(film, false);
-    if (luminances.empty()) luminances = luminances_of(film, true);
-    if (luminances.empty()) return std::nullopt;
-    const auto last = static_cast<double>(luminances.size() - 1);
-    const auto middle =
-        luminances.begin() + static_cast<std::ptrdiff_t>(std::floor(k_percentile * last));
-    std::size_t compared = 0;
-    const auto is_darker = [&](float a, float b) {
-        constexpr std::size_t k_between_stops = 1 << 16;
-        if (++compared % k_between_stops == 0) throw_if_stopped();
-        return a < b;
-    };
-    std::nth_element(luminances.begin(), middle, luminances.end(), is_darker);
-    double bright = *middle;
-    if (!(bright > 0)) bright = *std::max_element(middle, luminances.end());
-    const double exposure = k_luminance_of_percentile / bright;
-    if (!(bright > 0) || !std::isfinite(exposure)) return std::nullopt;
-    return exposure;
-}
 
 Preview make_preview(const Film& film, double exposure, const ColourView* view) {
     if (view != nullptr) return preview_of<Srgb8>(film, exposure, *view);

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -56,11 +55,6 @@ using Srgb16 = std::array<std::uint16_t, 3>;
 /// An image for viewing; for a film, its window only.
 using Preview = Grid2D<Srgb8>;
 using Preview16 = Grid2D<Srgb16>;
-
-/// The factor that brings the brighter parts of the film to a luminance of 0.8: the 99th percentile
-/// over the pixels with a ray (alpha > 0) and finite values that show no lamp, or the brightest
-/// pixel if fewer than 1 % are not black. Empty if all are black, which the caller should report.
-std::optional<double> automatic_exposure(const Film& film);
 
 /// R, G and B times `exposure` as sRGB, or through a view. NaN and pixels without a ray become
 /// black, and so do negative values in sRGB.

@@ -85,15 +85,15 @@ constexpr int k_max_cells = 1 << 21;
 // density 1/sqrt(1 - r^2) (LampFrame).
 constexpr double k_mean_square = 0.75;
 
-struct GlowCell {
+struct EmissiveCell {
     Point3 centre;
     double weight = 0;  // of all bands [W/sr]
     double square = 0;  // mean square distance of its light from its centre [m^2]
     Spectrum intensity;
 };
 
-std::vector<GlowCell> cells_of(const ConcentrationField& field, const Emission& emission) {
-    std::vector<GlowCell> cells;
+std::vector<EmissiveCell> cells_of(const ConcentrationField& field, const Emission& emission) {
+    std::vector<EmissiveCell> cells;
     const Bounds bounds = field.bounds();
     if (bounds.empty()) return cells;
     const Vector3 size = bounds.max - bounds.min;
@@ -115,7 +115,7 @@ std::vector<GlowCell> cells_of(const ConcentrationField& field, const Emission& 
                 double value = 0;
                 field.sample(x, std::span(&value, 1));
                 if (value <= 0) continue;
-                GlowCell lit{x, 0, glm::dot(cell, cell) / 12, volume * emission.of(value)};
+                EmissiveCell lit{x, 0, glm::dot(cell, cell) / 12, volume * emission.of(value)};
                 for (const double band : lit.intensity) lit.weight += band;
                 if (lit.weight > 0) cells.push_back(lit);
             }
@@ -123,18 +123,18 @@ std::vector<GlowCell> cells_of(const ConcentrationField& field, const Emission& 
     return cells;
 }
 
-EmissivePart part_of(std::span<const GlowCell> cells) {
+EmissivePart part_of(std::span<const EmissiveCell> cells) {
     EmissivePart part;
     double weight = 0, square = 0;
     Vector3 mean(0);
-    for (const GlowCell& cell : cells) {
+    for (const EmissiveCell& cell : cells) {
         part.intensity += cell.intensity;
         weight += cell.weight;
         mean += cell.weight * from_origin(cell.centre);
     }
     mean /= weight;
     part.centre = at_origin_plus(mean);
-    for (const GlowCell& cell : cells) {
+    for (const EmissiveCell& cell : cells) {
         const Vector3 offset = cell.centre - part.centre;
         square += cell.weight * (glm::dot(offset, offset) + cell.square);
     }
@@ -143,10 +143,10 @@ EmissivePart part_of(std::span<const GlowCell> cells) {
 }
 
 // The axis along which the cells' light has the greatest variance.
-int widest_axis(std::span<const GlowCell> cells) {
+int widest_axis(std::span<const EmissiveCell> cells) {
     double weight = 0;
     Vector3 mean(0), square(0);
-    for (const GlowCell& cell : cells) {
+    for (const EmissiveCell& cell : cells) {
         const Vector3 x = cell.centre - cells.front().centre;
         weight += cell.weight;
         mean += cell.weight * x;
@@ -158,16 +158,16 @@ int widest_axis(std::span<const GlowCell> cells) {
 }
 
 // Bisects the cells recursively into halves of equal power.
-void divide(std::span<GlowCell> cells, int count, std::vector<EmissivePart>& parts) {
+void divide(std::span<EmissiveCell> cells, int count, std::vector<EmissivePart>& parts) {
     if (count == 1 || cells.size() == 1) {
         parts.push_back(part_of(cells));
         return;
     }
     const int axis = widest_axis(cells);
     std::ranges::sort(cells, {},
-                      [&](const GlowCell& cell) { return from_origin(cell.centre)[axis]; });
+                      [&](const EmissiveCell& cell) { return from_origin(cell.centre)[axis]; });
     double all = 0, sum = 0;
-    for (const GlowCell& cell : cells) all += cell.weight;
+    for (const EmissiveCell& cell : cells) all += cell.weight;
     const int half = count / 2;
     const double wanted = all * half / count;
     std::size_t end = 0;
@@ -182,7 +182,7 @@ void divide(std::span<GlowCell> cells, int count, std::vector<EmissivePart>& par
 
 std::vector<EmissivePart> divide_emission(const ConcentrationField& field, const Emission& emission,
                                           int count) {
-    std::vector<GlowCell> cells = cells_of(field, emission);
+    std::vector<EmissiveCell> cells = cells_of(field, emission);
     std::vector<EmissivePart> parts;
     if (!cells.empty()) divide(cells, count, parts);
     return parts;
@@ -190,10 +190,10 @@ std::vector<EmissivePart> divide_emission(const ConcentrationField& field, const
 
 std::vector<EmissivePart> merged(std::span<const EmissivePart> parts, int count) {
     std::vector<EmissivePart> result;
-    std::vector<GlowCell> cells;
+    std::vector<EmissiveCell> cells;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        GlowCell cell{parts[i].centre, 0, k_mean_square * parts[i].radius * parts[i].radius,
-                      parts[i].intensity};
+        EmissiveCell cell{parts[i].centre, 0, k_mean_square * parts[i].radius * parts[i].radius,
+                          parts[i].intensity};
         for (const double band : cell.intensity) cell.weight += band;
         cells.push_back(cell);
         if (cells.size() < static_cast<std::size_t>(count) && i + 1 < parts.size()) continue;

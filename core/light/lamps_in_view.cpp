@@ -100,13 +100,11 @@ Spectrum LampEvenness::of(std::size_t lamp, const Ray& ray, const Interval& inte
     const auto surface = std::ranges::find_if(
         *scene_.lamp_surfaces, [&](const LampSurface& s) { return s.lamp.index() == lamp; });
     if (surface == scene_.lamp_surfaces->end() || !surface->is_passed_by(ray)) return one();
-    thread_local std::vector<double> of_emitters, of_many, concentration;
-    of_emitters.resize(integrals_->phase_count());
-    of_many.resize(integrals_->phase_count());
+    std::vector<double> of_emitters(integrals_->phase_count()), of_many(integrals_->phase_count());
     integrate(surface->emitters, ray, interval, of_emitters);
     integrate(surface->many, ray, interval, of_many);
     const Medium& medium = *scene_.medium;
-    concentration.assign(medium.constituents.size(), 0.0);
+    std::vector<double> concentration(medium.constituents.size());
     const LampPassage passage(ray, surface->lamp.position());
     if (!concentration.empty())
         scene_.field->sample(ray.at(std::clamp(passage.foot, interval.begin, interval.end)),
@@ -200,8 +198,8 @@ void LampsInView::append_volume(const SceneEmission& emissive, const Ray& ray, d
     const ConcentrationField& field = *emissive.volume->field;
     const double end = std::min(max_distance, inside(ray, field.bounds()).end);
     if (!(end > 0)) return;
-    thread_local ConcentrationProfile light, water;
-    thread_local std::vector<double> column;
+    ConcentrationProfile light, water;
+    std::vector<double> column;
     field.profile(ray, end, light);
     SeenLamp lamp{emissive.lamp, 0, {}, {}, true};
     double weight = 0;
@@ -265,8 +263,7 @@ void LampsInView::append(const Ray& ray, double max_distance,
         if (!(distance < max_distance + k_contact && distance < k_far)) continue;
         const double radiance = surface.radiance_towards(ray);
         if (radiance == 0) continue;
-        thread_local std::vector<double> column;
-        column.assign(scene_.medium->constituents.size(), 0.0);
+        std::vector<double> column(scene_.medium->constituents.size());
         if (!column.empty()) scene_.field->column(ray.origin, ray.at(distance), column);
         SeenLamp& lamp = visible.emplace_back();
         lamp.lamp = surface.lamp.index();

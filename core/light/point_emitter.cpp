@@ -17,8 +17,8 @@ double squared_offset(const Point3& point, double patch_radius, const Ray& ray) 
 Interval beam_of(const DirectionCone& cone, const Point3& apex, const Ray& ray,
                  const Interval& interval) {
     if (!(interval.length() > 0) || cone.has_all()) return interval;
-    thread_local std::vector<double> cuts;
-    cuts.clear();
+    std::vector<double> cuts;
+    cuts.reserve(4);  // two of them are ends
     append_cone_crossings(ray, apex, cone.axis, cone.cosine, cuts);
     std::erase_if(cuts, [&](double s) { return s <= interval.begin || s >= interval.end; });
     cuts.push_back(interval.begin);

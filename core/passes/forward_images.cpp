@@ -13,8 +13,7 @@
 namespace uw {
 
 void LampPaths::add_mean(double weight, const Point3& x, WaterPath& path) const {
-    thread_local std::vector<double> column;
-    column.assign(path.columns.size(), 0.0);
+    std::vector<double> column(path.columns.size());
     const double each = weight / static_cast<double>(scene_.lamp_count());
     for (std::size_t j = 0; j < scene_.emitters->size(); ++j) {
         const Lamp& emitter = (*scene_.emitters)[j];
@@ -49,9 +48,6 @@ void InScatterSlabs::join_pairs(double end, const Interval& kept) {
 
 void InScatterSlabs::integrate(const Ray& ray, double end, std::size_t first, std::size_t last,
                                std::vector<SlabLight>& slabs) const {
-    thread_local std::vector<double> ends;
-    thread_local InScatter light;
-    thread_local WaterPath path;
     const std::size_t constituents = attenuation_.constituents.size();
     slabs.resize(last - first);
     for (SlabLight& slab : slabs) {
@@ -67,15 +63,18 @@ void InScatterSlabs::integrate(const Ray& ray, double end, std::size_t first, st
         return std::max(0.0, along.distance(faces_[face]));
     };
     const double start = distance_of(first);
-    ends.clear();
+    std::vector<double> ends;
+    ends.reserve(last - first);
     for (std::size_t i = first; i < last && distance_of(i) < end; ++i)
         ends.push_back(std::min(end, distance_of(i + 1)));
     // Slabs that lie entirely before the start of the ray in water are empty.
     const auto empty = static_cast<std::size_t>(
         std::find_if(ends.begin(), ends.end(), [&](double s) { return s > start; }) - ends.begin());
     if (empty == ends.size()) return;
+    InScatter light;
     integrator_.in_scatter_from(ray, start, std::span(ends).subspan(empty), light);
 
+    WaterPath path;
     path.reset(constituents);
     path.length = start;
     if (constituents > 0) scene_.field->column(ray.origin, ray.at(start), path.columns);
@@ -94,7 +93,7 @@ void InScatterSlabs::integrate(const Ray& ray, double end, std::size_t first, st
 
 void InScatterSlabs::fill_slab(const Ray& ray, double begin, double end, double behind,
                                WaterPath& path, SlabLight& slab) const {
-    thread_local WaterPath part, whole;
+    WaterPath part, whole;
     const auto measure = [&](double to, WaterPath& piece) {
         piece.reset(attenuation_.constituents.size());
         piece.length = to - begin;

@@ -260,12 +260,12 @@ struct ForwardScattering::SurfaceSums {
     Spectrum response{};
     std::vector<Spectrum> irradiance, direct;  // per group
     WaterPath from_lamps, to_camera;
+    std::vector<double> column;  // of one sample
 };
 
 void ForwardScattering::keep_surfaces(std::size_t i, const RenderedPixel& pixel) {
-    thread_local SurfaceSums sums;
+    SurfaceSums sums;
     const std::vector<SurfaceSample>& samples = pixel.view.samples;
-    sums.response = Spectrum{};
     sums.irradiance.assign(groups_.size(), Spectrum{});
     sums.direct.assign(groups_.size(), Spectrum{});
     sums.from_lamps.reset(scene_.medium->constituents.size());
@@ -285,7 +285,7 @@ void ForwardScattering::keep_surfaces(std::size_t i, const RenderedPixel& pixel)
                 as_light((pixel.result.direct[b] - pixel.result.lamps_in_view[b]) * factor);
     }
     const auto set_mean = [&](const WaterPath& sum, PathImage& image) {
-        thread_local WaterPath mean;
+        WaterPath mean;
         mean.reset(sum.columns.size());
         mean.add(1.0 / static_cast<double>(samples.size()), sum.length, sum.columns);
         image.set(i, mean);
@@ -300,7 +300,7 @@ void ForwardScattering::add_surface(const RenderedPixel& pixel, std::size_t samp
     const SurfaceHit& hit = surface.hit;
     const SurfaceLight& light = pixel.light;
     const std::size_t at = pixel.first_sample + sample;
-    thread_local std::vector<double> column;
+    std::vector<double>& column = sums.column;
     column.assign(scene_.medium->constituents.size(), 0.0);
     if (!column.empty()) scene_.field->column(surface.ray.origin, hit.position, column);
     sums.to_camera.add(1, hit.distance, column);

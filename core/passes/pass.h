@@ -70,28 +70,33 @@ using PixelStep = std::function<void(const RenderedPixel& pixel)>;
 
 struct SnowModel;
 
-/// The image, or the part of an exposure, that is being rendered: what its passes work on.
-struct Rendering {
-    const SceneDesc& desc;        // the scene of the image
-    double time = 0;              // the time of that scene [s]; 0 if nothing moves
-    const PixelRenderer& pixels;  // with the scene's rays, water, surfaces and light
-    /// The deep shadow map of every emitter; empty if not needed.
-    std::span<const std::shared_ptr<const DeepShadow>> light;
-    const SnowModel* snow;  // null without snow
+/// Where passes write their image, and what they report to. All references must outlive it.
+struct ImageTarget {
     const LayerPlan& plan;
     const BandColour& colour;
     Film& film;  // its window is what is rendered
     const StageProgressCallback& progress;
     ImageProgress& reached;
-    /// Selects the rows for which TruthPass finds ground truth; empty: all rows.
-    std::function<bool(int row)> has_truth{};
-    /// In the order in which they are applied to a pixel, before it is stored.
-    std::vector<PixelStep> steps{};
 
     /// Returns a callback that reports the progress of this stage to `progress`.
     ProgressCallback progress_of(Stage stage) const {
         return [this, stage](double fraction) { progress(stage, fraction); };
     }
+};
+
+/// The image, or the part of an exposure, that is being rendered: what its passes work on. Made by
+/// make_rendering (render/scene_rendering.h).
+struct Rendering : ImageTarget {
+    const SceneDesc& desc;  // the scene of the image
+    double time = 0;        // the time of that scene [s]; 0 if nothing moves
+    PixelRenderer pixels;   // with the scene's rays, water, surfaces and light
+    /// The deep shadow map of every emitter; empty if not needed.
+    std::span<const std::shared_ptr<const DeepShadow>> light;
+    const SnowModel* snow;  // null without snow
+    /// Selects the rows for which TruthPass finds ground truth; empty: all rows.
+    std::function<bool(int row)> has_truth{};
+    /// In the order in which they are applied to a pixel, before it is stored.
+    std::vector<PixelStep> steps{};
 };
 
 /// What a pass needs before it is run.

@@ -68,8 +68,7 @@ void fill_total(const PixelResult& pixel, std::span<float> channels) {
 
 template <float PixelResult::SeenSurface::*id>
 void fill_mattes(const PixelResult& pixel, std::span<float> channels) {
-    thread_local std::vector<Matte> mattes;
-    mattes.clear();
+    std::vector<Matte> mattes;
     for (const PixelResult::SeenSurface& surface : pixel.visible_surfaces)
         add_matte(surface.*id, surface.fraction, mattes);
     store_mattes(mattes, channels);
@@ -267,8 +266,7 @@ void store_truth(const PixelResult& pixel, const LayerPlan& plan, std::span<floa
 
 void merge_paths(const PixelResult& pixel, double weight, const LayerPlan& plan,
                  const BandColour& colour, std::span<float> channels) {
-    thread_local std::vector<float> fresh;
-    fresh.resize(channels.size());
+    std::vector<float> fresh(channels.size());
     store_pixel(pixel, plan, colour, fresh);
     for (const ChannelGroup& group : plan.groups())
         if (group.content == LayerContent::light || group.first == k_alpha)

@@ -89,11 +89,10 @@ void SplineGrid::means(const RowSource& pixels, Grid2D<float>& nodes) const {
     Grid2D<float> lines(columns(), height_);
     std::vector<char> lit(static_cast<std::size_t>(height_));
     parallel_for(lit.size(), [&](std::size_t y) {
-        thread_local std::vector<double> row, line;
-        row.assign(static_cast<std::size_t>(width_), 0.0);
+        std::vector<double> row(static_cast<std::size_t>(width_));
         lit[y] = static_cast<char>(pixels(static_cast<int>(y), row));
         if (lit[y] == 0) return;
-        line.assign(static_cast<std::size_t>(columns()), 0.0);
+        std::vector<double> line(static_cast<std::size_t>(columns()));
         if (x_.is_identity())
             line = row;
         else
@@ -143,8 +142,7 @@ void SplineGrid::values(const Grid2D<float>& coefficients, Grid2D<float>& nodes)
 
 void SplineGrid::interpolate(const Grid2D<float>& coefficients, const RowSink& sink) const {
     parallel_for(static_cast<std::size_t>(height_), [&](std::size_t row) {
-        thread_local std::vector<double> line, pixels;
-        line.assign(static_cast<std::size_t>(columns()), 0.0);
+        std::vector<double> line(static_cast<std::size_t>(columns()));
         y_.for_each_tap(static_cast<int>(row), [&](int node, double weight) {
             const std::span<const float> from = coefficients.row(node);
             for (std::size_t x = 0; x < line.size(); ++x)
@@ -154,7 +152,7 @@ void SplineGrid::interpolate(const Grid2D<float>& coefficients, const RowSink& s
             sink(static_cast<int>(row), line);
             return;
         }
-        pixels.resize(static_cast<std::size_t>(width_));
+        std::vector<double> pixels(static_cast<std::size_t>(width_));
         x_.interpolate(line, pixels);
         sink(static_cast<int>(row), pixels);
     });

@@ -108,7 +108,7 @@ SlabLattice::NodeRay SlabLattice::find_ray(int i, int j) const {
 void SlabLattice::integrate(std::size_t first, std::vector<SlabImages>& slabs) const {
     std::vector<Grid2D<char>> visible(slabs.size(), Grid2D<char>(columns(), rows()));
     parallel_for(static_cast<std::size_t>(rows()), [&](std::size_t j) {
-        thread_local std::vector<SlabLight> lights;
+        std::vector<SlabLight> lights;
         for (int i = 0; i < columns(); ++i) {
             const std::size_t node = rays_.index(i, static_cast<int>(j));
             const NodeRay& ray = rays_[node];

@@ -154,7 +154,7 @@ EmissionDesc read_one_emission(const ConfigValue& value, const std::string& grid
     if (const auto entry = map.find("blackbody")) {
         emission.per_unit.assign(
             context.band_count,
-            entry->non_negative("give the share of a blackbody's radiance that a metre adds"));
+            entry->non_negative("give the fraction of a blackbody's radiance that a metre adds"));
         emission.blackbody = read_blackbody(map);
     } else if (const auto table = map.find("table")) {
         read_table(*table, emission, context);

@@ -65,7 +65,7 @@ enum class LevelSets { refused, fog };
 
 /// The light that a volume emits where one of its grids has a value. It is a lamp of the scene.
 struct EmissionDesc {
-    /// A glowing gas or dust, whose temperature is the grid's value times `kelvin` plus `offset`.
+    /// A hot gas or dust, whose temperature is the grid's value times `kelvin` plus `offset`.
     struct Blackbody {
         double kelvin = 1, offset = 0;  ///< [K per unit], [K]
 

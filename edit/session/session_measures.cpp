@@ -20,6 +20,7 @@
 #include "core/base/parallel.h"
 #include "core/image/picture_file.h"
 #include "core/image/pixel_image.h"
+#include "core/image/preview_exposure.h"
 #include "edit/session/edit_session.h"
 #include "edit/session/picture.h"
 #include "edit/session/request_members.h"

@@ -73,8 +73,7 @@ constexpr double k_splittable = 1.25;
 /// Makes a coarse profile as fine as a tolerance requires: intervals are halved where a sample
 /// halfway, or halfway through the next interval, differs from linear interpolation by more than
 /// the tolerance. The sample stays, so that the error left is about a quarter of the one allowed
-/// where concentrations are smooth. Sheets as thin as half an interval are not missed. An object is
-/// used for one ray after another.
+/// where concentrations are smooth. Sheets as thin as half an interval are not missed.
 class ProfileRefinement {
   public:
     /// Writes the concentrations at the distances `s`, one per constituent each.
@@ -195,18 +194,20 @@ struct PacedStretch {
     double step = 0;  // infinite where the value is constant
 };
 
-/// Per-thread storage of profile(), kept so that the hot loop does not allocate.
+/// What the profile of a ray is made in.
 struct Scratch {
     std::vector<GridStretch> intervals;
     std::vector<PacedStretch> paced;
     std::vector<std::size_t> cursor, list_end;  // one list of intervals per brick within `paced`
     std::vector<double> boundaries;
-    std::vector<double> values;
     std::vector<char> at_empty;  // knots next to an empty piece, where the concentration is zero
-    std::vector<double> least;   // by interval between knots: the step of its piece, or infinity
+    std::vector<double> least;   // that of sample_profile
+    std::vector<double> at_knots;
     ProfileRefinement refinement;
 };
 
+// Of the thread, since whoever asks a field for a profile need not know that it has grids:
+// allocating this for each ray takes a tenth of the instructions of assets/scenes/plume.yaml.
 Scratch& scratch_of_thread() {
     thread_local Scratch scratch;
     return scratch;
@@ -252,7 +253,7 @@ double step_of_piece(double begin, Scratch& scratch) {
 }
 
 void append_piece(double begin, double end, double step, double coarsening,
-                  ConcentrationProfile& profile, Scratch& scratch) {
+                  ConcentrationProfile& profile, Scratch& scratch, std::vector<double>& least) {
     if (step == 0) scratch.at_empty.back() = 1;
     if (step > 0 && coarsening * step < end - begin) {
         const double count = std::ceil((end - begin) / (coarsening * step));
@@ -263,25 +264,27 @@ void append_piece(double begin, double end, double step, double coarsening,
     }
     profile.s.push_back(end);
     scratch.at_empty.push_back(step == 0 ? 1 : 0);
-    scratch.least.resize(profile.s.size() - 1, step == 0 ? k_infinity : step);
+    least.resize(profile.s.size() - 1, step == 0 ? k_infinity : step);
 }
 
 // Intervals are `coarsening` times as long as the bricks require.
-void place_knots(double s_end, double coarsening, ConcentrationProfile& profile, Scratch& scratch) {
+void place_knots(double s_end, double coarsening, ConcentrationProfile& profile, Scratch& scratch,
+                 std::vector<double>& least) {
     profile.s.assign(1, 0.0);
     scratch.at_empty.assign(1, 0);
-    scratch.least.clear();
+    least.clear();
     double piece_begin = 0, piece_step = -1;
     for (std::size_t i = 0; i + 1 < scratch.boundaries.size(); ++i) {
         const double begin = scratch.boundaries[i];
         const double step = step_of_piece(begin, scratch);
         if (piece_step >= 0 && (step != piece_step || step == k_infinity)) {
-            append_piece(piece_begin, begin, piece_step, coarsening, profile, scratch);
+            append_piece(piece_begin, begin, piece_step, coarsening, profile, scratch, least);
             piece_begin = begin;
         }
         piece_step = step;
     }
-    append_piece(piece_begin, s_end, std::max(piece_step, 0.0), coarsening, profile, scratch);
+    append_piece(piece_begin, s_end, std::max(piece_step, 0.0), coarsening, profile, scratch,
+                 least);
 }
 
 // The interpolant is continuous: next to an empty interval it is exactly zero.
@@ -329,28 +332,28 @@ void GridField::column(const Point3& a, const Point3& b, std::span<double> colum
 
 void GridField::sample_knots(const Ray& ray, std::span<const double> s,
                              std::vector<double>& concentration) const {
-    Scratch& scratch = scratch_of_thread();
     const auto count = static_cast<std::size_t>(constituent_count_);
     concentration.assign(s.size() * count, 0.0);
+    std::vector<double>& at_knots = scratch_of_thread().at_knots;
     for (const GridVolume& volume : volumes_) {
         const LatticeLine line = volume.lattice_line(ray.origin, ray.direction);
-        scratch.values.assign(s.size(), 0.0);
-        for (const NanoGrid& brick : volume.bricks()) brick.add_samples(line, s, scratch.values);
+        at_knots.assign(s.size(), 0.0);
+        for (const NanoGrid& brick : volume.bricks()) brick.add_samples(line, s, at_knots);
         for (std::size_t knot = 0; knot < s.size(); ++knot) {
-            if (scratch.values[knot] == 0) continue;
+            if (at_knots[knot] == 0) continue;
             for (const GridLoad& load : volume.loads())
                 concentration[knot * count + static_cast<std::size_t>(load.constituent)] +=
-                    load.per_unit * scratch.values[knot];
+                    load.per_unit * at_knots[knot];
         }
     }
 }
 
 bool GridField::sample_profile(const Ray& ray, double s_end, double steps,
-                               ConcentrationProfile& profile) const {
+                               ConcentrationProfile& profile, std::vector<double>& least) const {
     Scratch& scratch = scratch_of_thread();
     profile.constituent_count = constituent_count_;
     gather_intervals(volumes_, ray, s_end, scratch);
-    place_knots(s_end, steps, profile, scratch);
+    place_knots(s_end, steps, profile, scratch, least);
     if (scratch.paced.empty()) {
         profile.concentration.assign(
             profile.s.size() * static_cast<std::size_t>(constituent_count_), 0.0);
@@ -363,11 +366,12 @@ bool GridField::sample_profile(const Ray& ray, double s_end, double steps,
 }
 
 void GridField::profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const {
-    if (sample_profile(ray, s_end, 1, profile)) profile.integrate();
+    if (sample_profile(ray, s_end, 1, profile, scratch_of_thread().least)) profile.integrate();
 }
 
 void GridField::coarse_profile(const Ray& ray, double s_end, ConcentrationProfile& profile) const {
-    if (sample_profile(ray, s_end, k_steps_of_voxel, profile)) profile.integrate();
+    std::vector<double>& least = scratch_of_thread().least;
+    if (sample_profile(ray, s_end, k_steps_of_voxel, profile, least)) profile.integrate();
 }
 
 void GridField::profile_within(const DepthTolerance& tolerance, const Ray& ray, double s_end,
@@ -376,8 +380,8 @@ void GridField::profile_within(const DepthTolerance& tolerance, const Ray& ray, 
         this->profile(ray, s_end, profile);
         return;
     }
-    if (!sample_profile(ray, s_end, k_coarse_steps, profile)) return;
     Scratch& scratch = scratch_of_thread();
+    if (!sample_profile(ray, s_end, k_coarse_steps, profile, scratch.least)) return;
     scratch.refinement.run(
         tolerance,
         [&](std::span<const double> s, std::vector<double>& values) {

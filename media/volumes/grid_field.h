@@ -69,8 +69,9 @@ class GridField final : public ConcentrationField {
 
   private:
     // With knots `steps` times as far apart as those of profile(). Whether there are any particles.
-    bool sample_profile(const Ray& ray, double s_end, double steps,
-                        ConcentrationProfile& profile) const;
+    // `least`, by interval between knots: the step of its piece, infinite where nothing varies.
+    bool sample_profile(const Ray& ray, double s_end, double steps, ConcentrationProfile& profile,
+                        std::vector<double>& least) const;
     // The concentrations at the distances `s`.
     void sample_knots(const Ray& ray, std::span<const double> s,
                       std::vector<double>& concentration) const;

@@ -46,11 +46,9 @@ void StratifiedField::profile_within(const DepthTolerance& tolerance, const Ray&
 // Between the knots of both the sum is linear, and so its columns are exact.
 void StratifiedField::add_strata(const Ray& ray, double s_end,
                                  ConcentrationProfile& profile) const {
-    thread_local std::vector<double> breaks;
-    thread_local ConcentrationProfile grids;
-    breaks.clear();
+    std::vector<double> breaks;
     strata_->append_breaks(ray, s_end, breaks);
-    std::swap(profile, grids);
+    const ConcentrationProfile grids = std::move(profile);
     const auto count = static_cast<std::size_t>(grids.constituent_count);
     profile.constituent_count = grids.constituent_count;
     profile.s.clear();

@@ -28,7 +28,7 @@ class LightMatrix(NamedTuple):
 
     lamps: list[str]
     images: NDArray[np.float32]  # (lamps, height, width, bands): of the lamps as they are
-    rest: NDArray[np.float32]  # (height, width, bands): of what glows by itself
+    rest: NDArray[np.float32]  # (height, width, bands): of what emits light itself
 
     def mix(self, factors: ArrayLike) -> NDArray[np.float64]:
         """The image (height, width, bands) with each lamp's brightness times its factor: (lamps,),

@@ -18,7 +18,8 @@
 #include "media/volumes/stratified_field.h"
 #include "media/water/tabulated_phase.h"
 #include "render/measures/light_meter.h"
-#include "render/renderer.h"
+#include "render/scene_assembly.h"
+#include "render/scene_cache.h"
 #include "render/validation/published_tables.h"
 
 namespace uw {
@@ -149,15 +150,15 @@ class CanonicalWater {
                                              fmt::arg("floor", problem == 6 ? k_floor : ""),
                                              fmt::arg("across", std::sin(sun_angle * k_degree)),
                                              fmt::arg("down", -std::cos(sun_angle * k_degree)));
-        renderer_.set_scene(ImageScene(read_scene_text(text, "canonical.yaml")));
-        renderer_.edit([&](AssembledScene& scene) {
-            if (problem == 3)
-                stratify(scene);
-            else
-                scene.water.medium.phase_functions.front() =
-                    problem == 1 ? molecules_phase() : particles_phase();
-        });
-        meter_.emplace(renderer_.assemble());
+        SceneCache cache;
+        scene_ = assemble_scene(read_scene_text(text, "canonical.yaml"), cache, [](Stage) {});
+        scene_->scattering = nullptr;  // another water
+        if (problem == 3)
+            stratify(*scene_);
+        else
+            scene_->water.medium.phase_functions.front() =
+                problem == 1 ? molecules_phase() : particles_phase();
+        meter_.emplace(*scene_);
     }
 
     /// A little above a floor that is there; at several places where waves focus the light.
@@ -174,11 +175,11 @@ class CanonicalWater {
         return readings;
     }
 
-    const AssembledScene& scene() { return renderer_.assemble(); }
+    const AssembledScene& scene() const { return *scene_; }
 
   private:
     bool has_waves_;
-    Renderer renderer_;
+    std::optional<AssembledScene> scene_;
     std::optional<LightMeter> meter_;
 };
 

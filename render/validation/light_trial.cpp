@@ -11,6 +11,7 @@
 
 #include "core/base/parallel.h"
 #include "core/image/pixel_image.h"
+#include "core/image/preview_exposure.h"
 #include "core/light/lamp.h"
 #include "core/passes/path_pass.h"
 #include "render/light_points.h"

@@ -129,19 +129,20 @@ class SceneTrial {
         compare(k_volume, k_direct_sum, {k_forward},
                 {.tolerances = k_mixed_kernels, .dark = k_dark_in_mixtures});
         compare_half_constant_grid(uniform);
-        scatter_without_splats(k_reference, uniform, RenderDesc::Integrator::reference);
+        scatter_without_splats(k_reference, uniform, RenderDesc::Integrator::reference,
+                               uniform.scene().slabs.value());
         compare(k_volume, k_reference, both, {.where = k_smooth});
         if (varies()) {
             scatter(k_volume_on_grids, trial, on_trial(trial));
-            scatter_without_splats(k_reference_on_grids, trial, RenderDesc::Integrator::reference);
+            scatter_without_splats(k_reference_on_grids, trial, RenderDesc::Integrator::reference,
+                                   trial.scene().slabs.value());
             compare(k_volume_on_grids, k_reference_on_grids, both,
                     {.where = k_smooth, .tolerances = k_rough_water});
         }
         const int finest = result_.planes.back().count;
-        const Slabs planes = planes_of(uniform, finest);
-        uniform.renderer.edit([&](AssembledScene& parts) { parts.slabs = planes; });
         const std::string sum = planes_name(finest);
-        scatter_without_splats(sum, uniform, RenderDesc::Integrator::planes);
+        scatter_without_splats(sum, uniform, RenderDesc::Integrator::planes,
+                               planes_of(uniform, finest));
         compare(k_volume, sum, both, {.where = k_smooth, .tolerances = k_cut_slabs});
     }
 
@@ -181,13 +182,14 @@ class SceneTrial {
     }
 
     // Does so by an integrator that uses no splatted light or columns.
-    void scatter_without_splats(const std::string& method, TrialScene& trial,
-                                RenderDesc::Integrator which) {
-        trial.renderer.edit([&](AssembledScene& parts) {
-            parts.image =
-                parts.image.with([&](SceneDesc& desc) { desc.render.integrator = which; });
-        });
-        scatter(method, trial, trial.renderer.make_transport());
+    void scatter_without_splats(const std::string& method, const TrialScene& trial,
+                                RenderDesc::Integrator which, const Slabs& slabs) {
+        AssembledScene parts = trial.scene();
+        parts.image = parts.image.with([&](SceneDesc& desc) { desc.render.integrator = which; });
+        parts.slabs = slabs;
+        TrialScene other;
+        other.renderer.set_scene(std::move(parts));
+        scatter(method, other, other.renderer.make_transport());
     }
 
     // The error of a method itself if its image still changes this much; none if it has converged.

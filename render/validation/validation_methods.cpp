@@ -26,26 +26,26 @@ constexpr int k_mean_samples = 64;     // along each edge of the field's bounds
 constexpr int k_grid_side = 48;        // voxels of the constant grid along each edge
 constexpr double k_reach_depths = 15;  // optical depths that the constant grid extends
 
-Renderer make_renderer(const ImageScene& scene) {
+template <class Scene>
+Renderer make_renderer(Scene scene) {
     Renderer renderer;
-    renderer.set_scene(scene);
+    renderer.set_scene(std::move(scene));
     return renderer;
 }
 
-// `scene` without its volumes, the light that they give off, and strata, in the water of `medium`;
-// not splatted.
-Renderer in_water(const ImageScene& scene, Medium medium) {
+// `scene` without its volumes, the light that they give off, and strata, in the water of `medium`.
+AssembledScene in_water(const ImageScene& scene, Medium medium) {
     Renderer renderer = make_renderer(scene.with([](SceneDesc& desc) {
         desc.volumes.clear();
         std::erase_if(desc.lamps,
                       [](const LampDesc& lamp) { return lamp.emissive_volume.has_value(); });
     }));
-    renderer.edit([&](AssembledScene& parts) {
-        parts.water.medium = std::move(medium);
-        parts.water.strata = nullptr;
-        parts.field = make_field({}, parts.water.medium.constituent_count(), nullptr);
-    });
-    return renderer;
+    AssembledScene parts = renderer.assemble();
+    parts.water.medium = std::move(medium);
+    parts.water.strata = nullptr;
+    parts.scattering = nullptr;
+    parts.field = make_field({}, parts.water.medium.constituent_count(), nullptr);
+    return parts;
 }
 
 // Mean concentration of each constituent over the grids' bounds; without grids, those at `camera`.
@@ -140,7 +140,7 @@ TrialScene homogenised(const TrialScene& trial, const ImageScene& scene) {
     for (std::size_t k = 0; k < mean.size(); ++k)
         add_scaled(medium.uniform, medium.constituents[k].per_unit, mean[k]);
     medium.constituents.clear();
-    return splatted(in_water(scene, std::move(medium)));
+    return splatted(make_renderer(in_water(scene, std::move(medium))));
 }
 
 TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, double fraction) {
@@ -175,17 +175,15 @@ TrialScene with_constant_grid(const TrialScene& trial, const ImageScene& scene, 
     volume.up = UpAxis::y;
     write_vdb(volume.file, {ones}, {{"creator", "uwvdb validate"}});
 
-    Renderer renderer = in_water(scene, std::move(medium));
-    renderer.edit([&](AssembledScene& parts) {
-        parts.field =
-            load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1, parts.volume_reports, parts.warnings);
-        parts.image = parts.image.with([&](SceneDesc& desc) {
-            ForwardScatterDesc& forward = desc.water.forward_scatter;
-            forward.G *= 1 - fraction;
-            forward.B *= 1 - fraction;
-        });
+    const ImageScene reduced = scene.with([&](SceneDesc& desc) {
+        ForwardScatterDesc& forward = desc.water.forward_scatter;
+        forward.G *= 1 - fraction;
+        forward.B *= 1 - fraction;
     });
-    return splatted(std::move(renderer));
+    AssembledScene parts = in_water(reduced, std::move(medium));
+    parts.field =
+        load_volumes({volume}, {{{GridLoad{0, 1.0}}}}, 1, parts.volume_reports, parts.warnings);
+    return splatted(make_renderer(std::move(parts)));
 }
 
 Slabs planes_of(const TrialScene& trial, int count) {

@@ -11,6 +11,7 @@
 #include "core/base/parallel.h"
 #include "core/geometry/geometry_scene.h"
 #include "core/image/image_file.h"
+#include "core/image/preview_exposure.h"
 #include "core/passes/pixel_pass.h"
 #include "render/renderer.h"
 #include "tests/bench/support/measure.h"
@@ -51,20 +52,13 @@ class StageRun {
     }
 
     /// Runs passes on an image of the scene.
-    void render(const PixelRenderer& pixels, const LayerPlan& plan, Film& film,
-                const std::function<void(Rendering&)>& run) {
+    void render(const LayerPlan& plan, Film& film, const std::function<void(Rendering&)>& run) {
         const BandColour colour(desc().water.bands_nm);
         const StageProgressCallback progress = [](Stage, double) {};
         ImageProgress reached;
-        Rendering rendering{.desc = desc(),
-                            .pixels = pixels,
-                            .light = renderer_.light(),
-                            .snow = nullptr,
-                            .plan = plan,
-                            .colour = colour,
-                            .film = film,
-                            .progress = progress,
-                            .reached = reached};
+        const LightTransport& by = transport();
+        Rendering rendering = make_rendering(scene(), *scene().camera, by, renderer_.light(),
+                                             {plan, colour, film, progress, reached});
         run(rendering);
     }
 
@@ -129,15 +123,14 @@ void march(StageRun& run, benchmark::State& state) {
 
 // An image with forward scatter; `render_s` is the CPU time of the same without.
 void forward_scatter(StageRun& run, benchmark::State& state) {
-    const PixelRenderer renderer = run.pixels();
     const LayerPlan plan = run.plan();
     Film film = run.film();
     const double begin = process_cpu_seconds();
-    run.render(renderer, plan, film,
+    run.render(plan, film,
                [&](Rendering& rendering) { PixelPass(run.desc().render).run(rendering); });
     state.counters["render_s"] = process_cpu_seconds() - begin;
     run.measure(state, [&] {
-        run.render(renderer, plan, film, [&](Rendering& rendering) {
+        run.render(plan, film, [&](Rendering& rendering) {
             make_passes(run.scene().image).run(Pass::Of::light, rendering);
         });
     });
@@ -165,7 +158,7 @@ Film rendered(StageRun& run, const char* layers) {
     const CameraDesc& camera = run.desc().camera;
     Film film(camera.width, camera.height, {0, 0, camera.width, camera.height},
               plan.channel_names());
-    run.render(run.pixels(), plan, film,
+    run.render(plan, film,
                [&](Rendering& rendering) { PixelPass(run.desc().render).run(rendering); });
     return film;
 }

@@ -38,9 +38,9 @@ def names(request):
 
 @pytest.mark.parametrize("names", ["water"], indirect=True)
 def test_the_muddier_the_more_of_the_light_is_veil(names):
-    shares = [float((image["backscatter"] / image["total"]).mean())
+    fractions = [float((image["backscatter"] / image["total"]).mean())
               for image in names["images"].values()]
-    assert len(shares) == 4 and shares == sorted(shares)
+    assert len(fractions) == 4 and fractions == sorted(fractions)
 
 
 @pytest.mark.parametrize("names", ["lamps"], indirect=True)

@@ -154,7 +154,7 @@ class LightOnAWall {
         return light;
     }
 
-    /// The share of the lamp that the samples of pixel (column, row) see at a point of the wall.
+    /// The fraction of the lamp that the samples of pixel (column, row) see at a point of the wall.
     double seen_by_pixel(double x, double y, int count, int column, int row) const {
         const LitScene lit = scene_.assembled().lit();
         const PixelSampling sampling({count}, column, row);
@@ -261,9 +261,9 @@ TEST(AreaLamps, OnePointIsAPoint) {
     }
 }
 
-// The share of what a diffuse point emits that falls on the square |x|, |y| < a at distance 1: the
-// view factors of its four parts.
-double share_on_square(double a, double x, double y) {
+// The fraction of what a diffuse point emits that falls on the square |x|, |y| < a at distance 1:
+// the view factors of its four parts.
+double fraction_on_square(double a, double x, double y) {
     double sum = 0;
     for (const double u : {a - x, a + x})
         for (const double v : {a - y, a + y}) {
@@ -287,20 +287,20 @@ TEST(AreaLamps, AllOfItsPowerArrives) {
                 for (std::size_t band = 0; band < 3; ++band)
                     flux[band] += light.irradiance(0, j, band) * k_step * k_step;
         }
-    double share = 0;  // the mean over the disk
+    double fraction = 0;  // the mean over the disk
     constexpr int k_rings = 20, k_spokes = 16;
     for (int ring = 0; ring < k_rings; ++ring)
         for (int spoke = 0; spoke < k_spokes; ++spoke) {
             const double r = k_radius * std::sqrt((ring + 0.5) / k_rings);
             const double angle = 2 * pi * spoke / k_spokes;
-            share +=
-                share_on_square(2, r * std::cos(angle), r * std::sin(angle)) / (k_rings * k_spokes);
+            fraction += fraction_on_square(2, r * std::cos(angle), r * std::sin(angle)) /
+                        (k_rings * k_spokes);
         }
-    EXPECT_NEAR(share, 0.829, 1e-3);
+    EXPECT_NEAR(fraction, 0.829, 1e-3);
     for (std::size_t band = 0; band < 3; ++band) {
         const auto power = static_cast<double>(band + 1);
         // Midpoints 5 cm apart, and 64 points.
-        EXPECT_NEAR(flux[band], power * share, 5e-4 * power) << band;
+        EXPECT_NEAR(flux[band], power * fraction, 5e-4 * power) << band;
     }
 }
 

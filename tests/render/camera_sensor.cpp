@@ -51,9 +51,9 @@ TEST_F(CameraSensors, CountWhatTheRadianceOfEachBandMakes) {
     const Film image = film();
     const auto& bands = desc_.water.bands_nm;
     ASSERT_EQ(bands, (std::vector<double>{620, 540, 450}));
-    // The bands' intervals are 580 to 660, 495 to 580 and 405 to 495 nm: their shares of the power
-    // and their middles.
-    const double share[] = {80.0 / 85, 1, 90.0 / 85}, middle[] = {620, 537.5, 450};
+    // The bands' intervals are 580 to 660, 495 to 580 and 405 to 495 nm: their fractions of the
+    // power and their middles.
+    const double width_ratio[] = {80.0 / 85, 1, 90.0 / 85}, middle[] = {620, 537.5, 450};
     const IntrinsicsDesc& k = desc_.camera.intrinsics;
     double most = 0;
     for (int y = 0; y < 30; y += 7)
@@ -65,8 +65,8 @@ TEST_F(CameraSensors, CountWhatTheRadianceOfEachBandMakes) {
                 double electrons = 0;
                 for (std::size_t b = 0; b < 3; ++b)
                     electrons += sensor().quantum_efficiency.values[c][b] * 5.0341165675e24 *
-                                 3.45e-6 * 3.45e-6 * 0.01 * share[b] * middle[b] * 1e-9 * lens *
-                                 static_cast<double>(image.pixel(x, y)[b]);
+                                 3.45e-6 * 3.45e-6 * 0.01 * width_ratio[b] * middle[b] * 1e-9 *
+                                 lens * static_cast<double>(image.pixel(x, y)[b]);
                 // Half a number of rounding.
                 EXPECT_NEAR(numbers(image, x, y)[c], 0.5 * electrons, 0.5 + 1e-9 * electrons);
                 most = std::max(most, electrons);

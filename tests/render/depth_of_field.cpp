@@ -88,7 +88,7 @@ TEST(DepthOfField, IsTheMeanOverPinholesAllOverTheLens) {
     for (int i = 0; i < k_rings; ++i) {
         const int around = 6 * i + 3;  // equal areas, nearly
         for (int j = 0; j < around; ++j, ++count) {
-            // Ring i holds (2 i + 1) of k_rings^2 shares, as `around` does.
+            // Ring i holds (2 i + 1) of k_rings^2 parts, as `around` does.
             const double radius = k_radius * (i + 0.5) / k_rings;
             const double angle = 2 * std::numbers::pi * (j + 0.37 * i) / around;
             const double u = radius * std::cos(angle), v = radius * std::sin(angle);

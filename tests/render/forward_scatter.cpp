@@ -51,7 +51,7 @@ TEST(ForwardScatter, OfAPointHasTheEnergyOfItsRangeInBothPlaces) {
                     }
             ASSERT_GE(lit, 1);
             ASSERT_GT(irradiance, 0);
-            // One pixel holds the sphere: the kernel's share of that pixel closes (14).
+            // One pixel holds the sphere: the kernel's fraction of that pixel closes (14).
             ASSERT_EQ(lit, 1);
             const double s = 400 * how.B * 4.997 / (2 * std::numbers::pi);
             const double corner =
@@ -168,9 +168,9 @@ TEST_P(ForwardScatterOfShape, KeepsTheKernelOfItsOwnSideAtADepthEdge) {
                 return GetParam() == Shape::gaussian ? 0.5 * std::erf(r / (2 * s))
                                                      : std::atan(r / s) / std::numbers::pi;
             };
-            const double share = line(x - at + 0.5) - line(x - at - 0.5);
+            const double fraction = line(x - at + 0.5) - line(x - at - 0.5);
             const double lit = image.value(Layer::direct, source, 8, 1);
-            truth += lit * share * (std::exp(-0.05 * range) - std::exp(-c * range));
+            truth += lit * fraction * (std::exp(-0.05 * range) - std::exp(-c * range));
         }
         // (14) adds to the lit side what the lamp's way of 2 m brings back: at most
         // e^{-0.1} - e^{-2c}, all of which stays on the box but near the edge.

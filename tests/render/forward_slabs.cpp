@@ -13,8 +13,8 @@
 namespace uw::test {
 namespace {
 
-// A wall that glows and reflects.
-SceneDesc glowing(const MeshFolder& folder) {
+// A wall that emits and reflects light.
+SceneDesc emissive_wall(const MeshFolder& folder) {
     TexturedGltf gltf;
     gltf.material = R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1]},
         "emissiveFactor":[0.9,0.6,0.3]})";
@@ -79,7 +79,7 @@ void expect_same(const A& a, const PlainFilm& b, double tolerance) {
 
 TEST(ForwardScatter, IsTheSameWithoutTheLayersOfLamps) {
     const MeshFolder folder;
-    const SceneDesc desc = glowing(folder);
+    const SceneDesc desc = emissive_wall(folder);
     expect_same(RenderedFilm(desc), PlainFilm(desc), 5e-5);
 }
 
@@ -105,12 +105,12 @@ TEST(ForwardScatter, IsTheSameHoweverManySlabsFitIntoMemory) {
         volume.where = "test";
         for (int part = 0; part < parts; ++part) {
             // Different ones, or they would be one constituent: their sum is that of equal ones.
-            const double share = (1 + 0.5 * (part - 0.5 * (parts - 1)) / parts) / parts;
+            const double fraction = (1 + 0.5 * (part - 0.5 * (parts - 1)) / parts) / parts;
             GridMappingDesc mapping;
             mapping.grid = "density";
             mapping.optics.emplace();
-            mapping.optics->absorption = {0.05 * share, 0.04 * share, 0.03 * share};
-            mapping.optics->scattering = {0.10 * share, 0.12 * share, 0.14 * share};
+            mapping.optics->absorption = {0.05 * fraction, 0.04 * fraction, 0.03 * fraction};
+            mapping.optics->scattering = {0.10 * fraction, 0.12 * fraction, 0.14 * fraction};
             mapping.where = "test";
             volume.grids.push_back(mapping);
         }

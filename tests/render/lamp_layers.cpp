@@ -38,7 +38,7 @@ class LampLayers : public testing::TestWithParam<LayersOf> {
         grid.max = {3, 3, 3};
         grid.value = [](int, int, int) { return 1.0; };
         grid.file_from_index = Affine::translation({0.4, 0.8, 2.5}) * Affine::scale(Vector3(0.05));
-        write_fixture(folder_.path() / "glow.vdb", {grid});
+        write_fixture(folder_.path() / "emission.vdb", {grid});
         IesWriter ies;
         ies.polar = {0, 30, 60, 90};
         ies.candelas = [](double polar, double) { return 900 - 10 * polar; };
@@ -114,8 +114,8 @@ const std::string k_ies =
 const std::string k_sun =
     "{name: sun, type: sun, direction: [0.4, -1, 0.2], irradiance: [1, 1, 1], samples: 4}";
 const std::string k_sky = "sky: {model: uniform, irradiance: [1, 2, 3], samples: 8}\n";
-const std::string k_glow =
-    "volumes: [{file: glow.vdb, emission: {flame: {per_unit: [5, 2, 1], samples: 4}}}]\n";
+const std::string k_emissive_volume =
+    "volumes: [{file: emission.vdb, emission: {flame: {per_unit: [5, 2, 1], samples: 4}}}]\n";
 
 // Each by itself, so that none hides behind a brighter one.
 TEST_P(LampLayers, HoldTheLightOfEachKindOfLamp) {
@@ -133,12 +133,12 @@ TEST_P(LampLayers, HoldTheSkyThatIsSeen) {
 }
 
 TEST_P(LampLayers, HoldTheLightOfVolumes) {
-    EXPECT_LT(worst(scene("", k_glow)), k_rounding);
+    EXPECT_LT(worst(scene("", k_emissive_volume)), k_rounding);
 }
 
 TEST_P(LampLayers, HoldAllOfThemTogether) {
     const SceneDesc desc =
-        scene(k_spot + ", " + k_panel + ", " + k_ball + ", " + k_sun, k_sky + k_glow);
+        scene(k_spot + ", " + k_panel + ", " + k_ball + ", " + k_sun, k_sky + k_emissive_volume);
     EXPECT_EQ(desc.lamps.size(), 6U);
     EXPECT_LT(worst(desc), k_rounding);
 }
@@ -182,7 +182,8 @@ TEST_P(LayersBesideEmission, LeaveOutWhatSurfacesEmit) {
         return desc;
     };
     const RenderedFilm dark(with_wall("", ""));
-    EXPECT_LT(worst(with_wall(k_spot + ", " + k_sun, k_sky + k_glow), &dark), k_rounding);
+    EXPECT_LT(worst(with_wall(k_spot + ", " + k_sun, k_sky + k_emissive_volume), &dark),
+              k_rounding);
 }
 
 INSTANTIATE_TEST_SUITE_P(Renderings, LayersBesideEmission, testing::Values(k_volume),

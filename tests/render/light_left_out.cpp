@@ -31,7 +31,7 @@ class LeftOut : public testing::Test {
         const std::optional<LightLeftOut> left_out = estimate();
         return left_out_note(renderer_.assembled(), left_out);
     }
-    /// The share of the layer `multiple` in an image of many paths.
+    /// The fraction of the layer `multiple` in an image of many paths.
     double fraction_in_image() {
         SceneDesc all = desc_;
         all.render.integrator = RenderDesc::Integrator::path;
@@ -129,12 +129,10 @@ TEST_F(LeftOut, IsBoundedWork) {
         std::size_t rays = 0;
         with_threads(threads, [&] {
             renderer_.set_scene(SceneDesc(desc_));
-            std::shared_ptr<const CountedSurfaces> counted;
-            renderer_.edit([&](AssembledScene& scene) {
-                counted = std::make_shared<CountedSurfaces>(scene.surfaces);
-                scene.surfaces = counted;
-            });
-            renderer_.light_left_out();  // none where all is dark
+            AssembledScene scene = renderer_.assemble();
+            const auto counted = std::make_shared<const CountedSurfaces>(scene.surfaces);
+            scene.surfaces = counted;
+            estimate_light_left_out(scene);  // none where all is dark
             rays = counted->rays();
         });
         return rays;

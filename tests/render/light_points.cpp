@@ -92,12 +92,12 @@ TEST_F(LightPoints, OfAVolumeAreJudgedAsImagesOfMorePointsDo) {
     grid.max = {10, 10, 10};
     grid.value = [](int, int, int) { return 1.0; };
     grid.file_from_index = Affine::translation({0.0, 2.0, 0.4}) * Affine::scale(Vector3(0.1));
-    write_fixture(folder_.path() / "glow.vdb", {grid});
+    write_fixture(folder_.path() / "emission.vdb", {grid});
     const auto with_points = [&](int samples) {
         return scene(fmt::format(
             "water: {{bands: [620, 540, 450], absorption: [0.3, 0.2, 0.2], scattering: {{b: [0.8, "
             "0.8, 0.8], phase: {{type: hg, g: 0.5}}}}}}\n"
-            "volumes: [{{file: glow.vdb, emission: {{flame: {{per_unit: [3, 2, 1], samples: "
+            "volumes: [{{file: emission.vdb, emission: {{flame: {{per_unit: [3, 2, 1], samples: "
             "{}}}}}}}]\n",
             samples));
     };
@@ -111,7 +111,7 @@ TEST_F(LightPoints, OfAVolumeAreJudgedAsImagesOfMorePointsDo) {
     EXPECT_NEAR(lamps[0].change, truth, 0.5 * truth);
 }
 
-TEST_F(LightPoints, AreNothingWithoutSkyAndGlow) {
+TEST_F(LightPoints, AreNothingWithoutSkyAndEmission) {
     EXPECT_TRUE(found(scene("lamps: [{position: [1, 0, 0], intensity: [5, 5, 5]}]\n")).empty());
     // A black sky is not a lamp; what does not scatter over a black floor shows the sky alone.
     const std::vector<PointedLamp> lamps = found(

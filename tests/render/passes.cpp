@@ -48,7 +48,6 @@ TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
     Renderer renderer;
     renderer.set_scene(image());
     const LightTransport transport = renderer.make_transport();
-    const PixelRenderer pixels = pixel_renderer(renderer.assembled(), transport);
     const LayerPlan plan = layer_plan(image(), "depth");
     const BandColour colour(desc_.water.bands_nm);
     Film film(8, 6, {0, 0, 8, 6}, plan.channel_names());
@@ -59,15 +58,8 @@ TEST_F(Passes, AllBeginBeforeTheFirstOfTheirKindIsRun) {
         notes.push_back("stage " + std::string(name_of(stage)));
     };
     ImageProgress reached;
-    Rendering rendering{.desc = desc_,
-                        .pixels = pixels,
-                        .light = {},
-                        .snow = nullptr,
-                        .plan = plan,
-                        .colour = colour,
-                        .film = film,
-                        .progress = progress,
-                        .reached = reached};
+    Rendering rendering = make_rendering(renderer.assembled(), *renderer.assembled().camera,
+                                         transport, {}, {plan, colour, film, progress, reached});
     PassList passes;
     passes.add<NotingPass>(notes, Stage::snow);
     passes.add<NotingPass>(notes, Stage::reflection, Pass::Of::truth);

@@ -101,7 +101,7 @@ TEST(GaussianPlume, VolumeIntegratorAgreesWithTheReferenceInTheLightOfAPanel) {
         EXPECT_LT(difference(image, truth, band).rms, 0.003);  // as for point lamps
 }
 
-TEST(GaussianPlume, DimsWhatIsBehindItAndGlowsItself) {
+TEST(GaussianPlume, DimsWhatIsBehindItAndScattersLight) {
     const TempDir dir;
     const SceneDesc with = plume_scene(write_gaussian(dir, 0.05));
     SceneDesc without = with;

@@ -256,12 +256,16 @@ TEST_F(Images, HaveSlabsOnlyIfTheyNeedThem) {
     EXPECT_TRUE(renderer.assemble().slabs);
 }
 
-TEST_F(Images, OfAnEditedSceneAreNotTakenOver) {
+TEST_F(Images, OfAnAssembledSceneWithAnotherPartAreNotTakenOver) {
     Renderer renderer;
     renderer.set_scene(SceneDesc(desc_));
     const Film before = renderer.render();
-    renderer.edit([](AssembledScene& scene) { scene.water.medium.uniform.absorption[0] = 3; });
-    EXPECT_FALSE(std::ranges::equal(renderer.render().values(), before.values()));
+    AssembledScene other = renderer.assembled();
+    other.water.medium.uniform.absorption[0] = 3;
+    other.scattering = nullptr;
+    renderer.set_scene(std::move(other));
+    const Film changed = renderer.render();
+    EXPECT_FALSE(std::ranges::equal(changed.values(), before.values()));
     expect_as_new(renderer);
 }
 

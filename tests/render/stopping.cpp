@@ -119,19 +119,10 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
             const DeepShadows light = LightSplatter().splat(
                 assembled, deep_shadow_options(desc.render.quality, assembled.water.medium));
             const LightTransport transport = make_light_transport(assembled, light, needs.paths);
-            const PixelRenderer pixels =
-                pixel_renderer(assembled, transport, in_scatter_parts(plan));
             const StageProgressCallback progress = [](Stage, double) {};
             ImageProgress reached;
-            Rendering rendering{.desc = desc,
-                                .pixels = pixels,
-                                .light = light,
-                                .snow = nullptr,
-                                .plan = plan,
-                                .colour = colour,
-                                .film = film,
-                                .progress = progress,
-                                .reached = reached};
+            Rendering rendering = make_rendering(assembled, *assembled.camera, transport, light,
+                                                 {plan, colour, film, progress, reached});
             passes.run(Pass::Of::light, rendering);
         };
         const ThreadLimit alone(1);
@@ -141,7 +132,7 @@ class Stopping : public testing::TestWithParam<StoppedCase> {
     }
 };
 
-// A few milliseconds' worth, nowhere more; that of a whole row of pixels would be 65 000 and more.
+// They take a few milliseconds; a whole row of pixels would be 65 000 rays and more.
 TEST_P(Stopping, TakesNoMoreThanSomeRays) {
     constexpr std::size_t k_most = 4096;
     for (const std::size_t until : {1U, 1000U, 200'000U, 5'000'000U, 8'000'000U})

@@ -17,13 +17,13 @@ namespace uw::test {
 namespace {
 
 /// A grid of the value 1 in a box or a ball of voxels, in the world.
-struct GlowFixture {
+struct EmissiveFixture {
     TempDir folder;
 
     VolumeDesc volume(const VdbFixture& grid) const {
-        write_fixture(folder / "glow.vdb", {grid});
+        write_fixture(folder / "emission.vdb", {grid});
         VolumeDesc desc;
-        desc.file = folder / "glow.vdb";
+        desc.file = folder / "emission.vdb";
         desc.where = "test";
         return desc;
     }
@@ -61,7 +61,7 @@ EmissionDesc flame(const PerBand& per_unit) {
 }
 
 /// The scene with the volume's light.
-SceneDesc glowing(VolumeDesc volume, const EmissionDesc& emission, int width = 8, int height = 6) {
+SceneDesc emissive(VolumeDesc volume, const EmissionDesc& emission, int width = 8, int height = 6) {
     SceneDesc desc = pinhole_scene(width, height);
     volume.emission = {emission};
     desc.volumes = {std::move(volume)};
@@ -87,12 +87,12 @@ double planck_band(double temperature, double begin_nm, double end_nm) {
 
 class EmissionOf : public testing::TestWithParam<RenderDesc::Integrator> {
   protected:
-    GlowFixture fixture_;
+    EmissiveFixture fixture_;
 };
 
 // A slab of thickness L, behind d of water: int e^-cs ds = (e^-cd - e^-c(d + L)) / c.
 TEST_P(EmissionOf, OfASlabIsDimmedByWhatIsBeforeEachPartOfIt) {
-    SceneDesc desc = glowing(fixture_.slab(1.5), flame({3, 2, 1}));
+    SceneDesc desc = emissive(fixture_.slab(1.5), flame({3, 2, 1}));
     desc.render.integrator = GetParam();
     const TestScene scene(desc);
     const Medium& medium = scene.assembled().water.medium;
@@ -121,10 +121,10 @@ INSTANTIATE_TEST_SUITE_P(Integrators, EmissionOf,
                          testing::Values(RenderDesc::Integrator::volume,
                                          RenderDesc::Integrator::reference));
 
-// A surface hides what glows behind it, and what glows before it hides nothing.
+// A surface hides what emits light behind it, and what emits before it hides nothing.
 TEST(Emission, EndAtSurfaces) {
-    const GlowFixture fixture;
-    SceneDesc desc = glowing(fixture.slab(1.5), flame({3, 2, 1}));
+    const EmissiveFixture fixture;
+    SceneDesc desc = emissive(fixture.slab(1.5), flame({3, 2, 1}));
     desc.water.absorption = {0, 0, 0};
     desc.water.scattering->b = {0, 0, 0};
     desc.geometry = {plane_at_z(2)};
@@ -137,10 +137,10 @@ TEST(Emission, EndAtSurfaces) {
 // Outside of a ball the irradiance is that of all its light at its centre, as the parts of it lie
 // around each other as evenly as their number allows.
 TEST(Emission, LightSurfacesAsABallDoes) {
-    const GlowFixture fixture;
+    const EmissiveFixture fixture;
     EmissionDesc emission = flame({3, 2, 1});
     emission.samples = 64;
-    SceneDesc desc = glowing(fixture.ball(0.3, 1), emission);
+    SceneDesc desc = emissive(fixture.ball(0.3, 1), emission);
     desc.water.absorption = {0, 0, 0};
     desc.water.scattering->b = {0, 0, 0};
     desc.geometry = {plane_at_z(2)};
@@ -169,11 +169,11 @@ TEST(Emission, LightSurfacesAsABallDoes) {
     }
 }
 
-// What the water scatters of a small glow is what it scatters of a lamp as bright.
+// What the water scatters of a small emissive volume is what it scatters of a lamp as bright.
 TEST(Emission, AreScatteredAsALampIs) {
-    const GlowFixture fixture;
+    const EmissiveFixture fixture;
     EmissionDesc emission = flame({3e5, 2e5, 1e5});
-    SceneDesc desc = glowing(fixture.ball(0.02, 1), emission, 16, 12);
+    SceneDesc desc = emissive(fixture.ball(0.02, 1), emission, 16, 12);
     desc.volumes[0].world_from_upright = Affine::translation({1.5, 0.2, 0.0});
     const TestScene scene(desc);
     const Lamp& whole = scene.assembled().lamps[0];
@@ -226,9 +226,9 @@ TEST(Emission, OfATableAreLinearBetweenItsRows) {
 }
 
 // Light that the water's speed sets off, in a flow across the view whose speed grows along it: of v
-// = z / (1 s) from 1.5 to 2.5 m/s, the share at depth z is z - 1.5 m, int (z - 1.5) e^-cz dz.
+// = z / (1 s) from 1.5 to 2.5 m/s, the emission at depth z is z - 1.5 m, int (z - 1.5) e^-cz dz.
 TEST(Emission, AreSetOffByTheWatersSpeed) {
-    const GlowFixture fixture;
+    const EmissiveFixture fixture;
     VdbFixture grid;
     grid.name = "flame";
     grid.min = {-20, -20, 0};
@@ -250,7 +250,7 @@ TEST(Emission, AreSetOffByTheWatersSpeed) {
     volume.motion = MotionDesc{{"v.x", "v.y", "v.z"}, volume.file, false, {}, 0, "test.velocity"};
     EmissionDesc emission = flame({3, 2, 1});
     emission.stimulus = EmissionDesc::Stimulus{EmissionDesc::Stimulus::Quantity::speed, 1.5, 2.5};
-    const TestScene scene(glowing(volume, emission));
+    const TestScene scene(emissive(volume, emission));
     const Medium& medium = scene.assembled().water.medium;
     const Ray ray = scene.assembled().camera->refracted_ray(4.5, 3.5).value();
     const double slant = 1 / ray.direction.z;
@@ -260,7 +260,7 @@ TEST(Emission, AreSetOffByTheWatersSpeed) {
         const double truth = (3 - static_cast<double>(band)) * slant *
                              (std::exp(-c * 1.5) - (1 + c) * std::exp(-c * 2.5)) / (c * c);
         // The light fades over a voxel around its far face, where it is brightest, and the voxels
-        // next to the faces have the shares at their centres: of a voxel's third moment, 1e-3 of
+        // next to the faces have the fractions at their centres: of a voxel's third moment, 1e-3 of
         // it.
         EXPECT_NEAR(pixel.direct[band], truth, 2e-3 * truth) << band;
     }
@@ -268,10 +268,10 @@ TEST(Emission, AreSetOffByTheWatersSpeed) {
 
 // Within a gas that absorbs as much as it emits, and is as hot everywhere, one sees a blackbody.
 TEST(Emission, AreInEquilibriumInAFurnace) {
-    const GlowFixture fixture;
+    const EmissiveFixture fixture;
     EmissionDesc emission = flame({30, 20, 40});
     emission.blackbody = EmissionDesc::Blackbody{1, 1999};
-    SceneDesc desc = glowing(fixture.slab(-0.5), emission);  // around the camera
+    SceneDesc desc = emissive(fixture.slab(-0.5), emission);  // around the camera
     desc.water.absorption = {30, 20, 40};
     desc.water.scattering->b = {0, 0, 0};
     emission.per_unit = {1, 1, 1};
@@ -288,7 +288,7 @@ TEST(Emission, AreInEquilibriumInAFurnace) {
 // of the blackbody, and what is scattered once, isotropically, b / c of that. Points bring less of
 // the latter, the fewer they are: docs/scene-file.md tells how much.
 TEST(Emission, AreTooDarkInAFurnaceThatScatters) {
-    const GlowFixture fixture;
+    const EmissiveFixture fixture;
     VdbFixture grid;
     grid.name = "flame";
     grid.min = {0, 0, 0};
@@ -301,7 +301,7 @@ TEST(Emission, AreTooDarkInAFurnaceThatScatters) {
     gas.grid = "flame";
     gas.optics =
         GridMappingDesc::Optics{{2, 2, 2}, {1, 1, 1}, PhaseDesc{HenyeyGreensteinDesc{0}, "test"}};
-    SceneDesc desc = glowing(volume, emission);
+    SceneDesc desc = emissive(volume, emission);
     desc.water.absorption = {0, 0, 0};
     desc.water.scattering->b = {0, 0, 0};
     double direct = 0, scattered = 0;

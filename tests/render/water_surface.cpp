@@ -89,8 +89,8 @@ TEST_P(BelowSurface, ALampLightsTheWallAndTheWaterByItsImage) {
             const auto scattered = [&](const Point3& from, double s) {
                 const Vector3 way = ray.at(s) - from;
                 const double radius = glm::length(way);
-                const double share = from.y < k_ceiling ? fresnel_reflectance(way) : 1;
-                return share * 5 / (radius * radius) * k_scattering_below[b] *
+                const double reflectance = from.y < k_ceiling ? fresnel_reflectance(way) : 1;
+                return reflectance * 5 / (radius * radius) * k_scattering_below[b] *
                        phase_below(-glm::dot(way, ray.direction) / radius) *
                        std::exp(-k_attenuation_below[b] * (radius + s));
             };
@@ -152,8 +152,8 @@ TEST(WaterSurfaceLight, ShowsWhatIsBelowAsAMirror) {
                                : Vector3(ray.direction.x, -ray.direction.y, ray.direction.z);
                     const Vector3 way = point - from;
                     const double radius = glm::length(way);
-                    const double share = from.y < k_ceiling ? fresnel_reflectance(way) : 1;
-                    return share * (at < s ? 1 : fresnel_reflectance(ray.direction)) * 5 /
+                    const double reflectance = from.y < k_ceiling ? fresnel_reflectance(way) : 1;
+                    return reflectance * (at < s ? 1 : fresnel_reflectance(ray.direction)) * 5 /
                            (radius * radius) * k_scattering_below[b] *
                            phase_below(-glm::dot(way, back) / radius) *
                            std::exp(-c * (radius + at));
@@ -204,20 +204,20 @@ TEST(WaterSurfaceLight, SkyIsSeenInSnellsWindow) {
     for (int y = 0; y < 18; ++y)
         for (int x = 0; x < 24; ++x) {
             const Ray ray = *scene.assembled().camera->refracted_ray(x + 0.5, y + 0.5);
-            const double share = 1 - fresnel_reflectance(ray.direction);
+            const double transmittance = 1 - fresnel_reflectance(ray.direction);
             const double s = k_ceiling / ray.direction.y;
             for (int b = 0; b < 3; ++b) {
-                const double sky = 2 * k_water_index * k_water_index * share *
+                const double sky = 2 * k_water_index * k_water_index * transmittance *
                                    std::exp(-k_attenuation_below[static_cast<std::size_t>(b)] * s);
                 EXPECT_NEAR(film.value(Layer::direct, x, y, b), sky, 1e-6);
             }
-            ++(share > 0 ? inside : outside);
+            ++(transmittance > 0 ? inside : outside);
         }
     EXPECT_GT(inside, 50);
     EXPECT_GT(outside, 50);
 }
 
-// Below the surface a uniform sky leaves the share 1 - R of its irradiance, R the diffuse
+// Below the surface a uniform sky leaves the fraction 1 - R of its irradiance, R the diffuse
 // reflectance from above: 2 int R(theta) cos sin dtheta.
 TEST(WaterSurfaceLight, SkyLightsWhatLiesBelow) {
     SceneDesc desc = under_uniform_sky(2);

@@ -51,7 +51,7 @@ def _intrinsics(depsgraph, camera, size, shift_x):
                                            scale_x=render.pixel_aspect_x,
                                            scale_y=render.pixel_aspect_y)
     fx, fy = projection[0][0] * width / 2, projection[1][1] * height / 2
-    # An eye of a stereo pair has its own shift, a share of the side that the sensor fits.
+    # An eye of a stereo pair has its own shift, a fraction of the side that the sensor fits.
     sensor = data.sensor_height if data.sensor_fit == "VERTICAL" else data.sensor_width
     of_eye = (shift_x - data.shift_x) * fx * sensor / data.lens
     return {"fx": fx, "fy": fy, "cx": width / 2 * (1 - projection[0][2]) - of_eye,

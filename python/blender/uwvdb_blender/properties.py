@@ -29,7 +29,7 @@ class UwvdbScene(bpy.types.PropertyGroup):
                     "own choice")
     use_error: BoolProperty(
         name="Until Error", default=False,
-        description="With Path: go on until the standard error of the image is below this share of "
+        description="With Path: go on until the standard error of the image is below this fraction of "
                     "its mean")
     error: FloatProperty(name="Error", default=0.02, min=1e-4, max=1, precision=4,
                          description="Standard error of the image over its mean")

@@ -155,7 +155,8 @@ TEST_F(GltfImport, LensShiftIsTakenFromCustomProperties) {
                                       R"(,"perspective":{"yfov":1,"znear":1}}])"}})
             .camera.intrinsics;
     };
-    // In Blender the frame moves right and up by shares of its longer side, here 300 of 300 x 200.
+    // In Blender the frame moves right and up by fractions of its longer side, here 300 of 300 x
+    // 200.
     const IntrinsicsDesc automatic = camera_with(R"({"shift_x":0.1,"shift_y":0.05})");
     EXPECT_NEAR(automatic.cx, 150 - 30, 1e-12);
     EXPECT_NEAR(automatic.cy, 100 + 15, 1e-12);

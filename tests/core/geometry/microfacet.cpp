@@ -65,15 +65,15 @@ TEST(Microfacet, IsReciprocal) {
     EXPECT_GT(compared, 1900);
 }
 
-/// The share of light from `to_lamp`'s direction that a white metal reflects in all directions, by
-/// the midpoint rule over half vectors: dw = 4 (v.h) dw_h.
+/// The fraction of light from `to_lamp`'s direction that a white metal reflects in all directions,
+/// by the midpoint rule over half vectors: dw = 4 (v.h) dw_h.
 double reflected(double theta, double roughness) {
     const Vector3 lamp = at_angle(theta);
     const double alpha = roughness * roughness;
     double sum = 0;
     constexpr int k_steps = 600, k_turns = 240;
     for (int i = 0; i < k_steps; ++i) {
-        // tan(theta_h) = alpha sqrt(x / (1 - x)): equal shares of the GGX distribution.
+        // tan(theta_h) = alpha sqrt(x / (1 - x)): equal parts of the GGX distribution.
         const double x = (i + 0.5) / k_steps;
         const double tangent = alpha * std::sqrt(x / (1 - x));
         const double theta_h = std::atan(tangent);
@@ -96,10 +96,10 @@ double reflected(double theta, double roughness) {
 TEST(Microfacet, AWhiteMetalReflectsNoMoreThanItGetsAndAlmostAllIfSmooth) {
     for (const double theta : {0.05, 0.6, 1.1, 1.4}) {
         for (const double roughness : {0.05, 0.2, 0.5}) {
-            const double share = reflected(theta, roughness);
-            EXPECT_LT(share, 1.001) << theta << " " << roughness;  // the rule's error
+            const double fraction = reflected(theta, roughness);
+            EXPECT_LT(fraction, 1.001) << theta << " " << roughness;  // the rule's error
             // Light reflected twice is left out.
-            EXPECT_GT(share, roughness < 0.3 ? 0.95 : 0.75) << theta << " " << roughness;
+            EXPECT_GT(fraction, roughness < 0.3 ? 0.95 : 0.75) << theta << " " << roughness;
         }
         // Fully rough, D = 1/pi and V = 1/(2 (n.l + n.v)): int mu/(mu + n.l) dmu over 0..1.
         const double nl = std::cos(theta);

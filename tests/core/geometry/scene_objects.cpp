@@ -37,9 +37,9 @@ TEST(SceneObjects, LinesCrossATriangleWhereItsCornersSay) {
     const MeshObject object = one_triangle();
     const Point3 a = object.corner(0, 0), b = object.corner(0, 1), c = object.corner(0, 2);
     std::mt19937 rng(1);
-    std::uniform_real_distribution<double> share(0.01, 0.98);
+    std::uniform_real_distribution<double> uniform(0.01, 0.98);
     for (int n = 0; n < 500; ++n) {
-        const double u = share(rng), v = (1 - u) * share(rng);
+        const double u = uniform(rng), v = (1 - u) * uniform(rng);
         const Point3 target = a + u * (b - a) + v * (c - a);
         const Vector3 direction = random_direction(rng);
         // Directions in the triangle's own plane have no crossing to speak of.

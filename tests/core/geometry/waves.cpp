@@ -63,7 +63,7 @@ WavesDesc desc_of(const WaveSpectrumDesc& sea, std::optional<double> depth = std
 TEST(Waves, HaveTheFrequenciesOfTheirLimits) {
     // Deep gravity waves, omega^2 = g k; surface tension adds 7e-6 k^2 of it.
     EXPECT_NEAR(wave_frequency(0.1, {}), std::sqrt(9.80665 * 0.1), 1e-6);
-    // Shallow water: the speed is sqrt(g d), less its share (kd)^2 / 6.
+    // Shallow water: the speed is sqrt(g d), less the fraction (kd)^2 / 6.
     EXPECT_NEAR(wave_frequency(0.01, 1.0) / 0.01, std::sqrt(9.80665), 1e-4);
     // The slowest ripples: 0.23 m/s at 17 mm, where gravity and tension are equal.
     const double k = std::sqrt(9.80665 / 7.29e-5);
@@ -288,11 +288,11 @@ TEST(Waves, SeasObeyParseval) {
         for (int x = 0; x < sea.resolution; ++x) {
             const WavePoint point =
                 waves.at(sea.tile * x / sea.resolution, sea.tile * y / sea.resolution);
-            const double share = 1.0 / (sea.resolution * sea.resolution);
-            height += share * point.height;
-            mean.height_variance += share * point.height * point.height;
-            mean.slopes.along += share * point.slope_u * point.slope_u;
-            mean.slopes.across += share * point.slope_v * point.slope_v;
+            const double weight = 1.0 / (sea.resolution * sea.resolution);
+            height += weight * point.height;
+            mean.height_variance += weight * point.height * point.height;
+            mean.slopes.along += weight * point.slope_u * point.slope_u;
+            mean.slopes.across += weight * point.slope_v * point.slope_v;
         }
     const WaveStatistics expected = waves.statistics();
     EXPECT_NEAR(height, 0, 1e-12);

@@ -47,8 +47,8 @@ std::uint16_t value_at(const DigitalImage& image, int x, int y, int c) {
     return image.values[static_cast<std::size_t>((y * image.width + x) * image.channels + c)];
 }
 
-std::uint16_t of_share(double share) {
-    return static_cast<std::uint16_t>(std::lround(65535 * share));
+std::uint16_t of_fraction(double fraction) {
+    return static_cast<std::uint16_t>(std::lround(65535 * fraction));
 }
 
 TEST(Development, RawKeepsTheNumbersInTheUpperBits) {
@@ -81,7 +81,7 @@ TEST(Development, DemosaicsLinearColoursExactlyInEveryPattern) {
             for (int x = 1; x + 1 < k_width; ++x)
                 for (std::size_t c = 0; c < 3; ++c)
                     EXPECT_EQ(value_at(image, x, y, static_cast<int>(c)),
-                              of_share((light(x, y, c) - 95) / 4000));
+                              of_fraction((light(x, y, c) - 95) / 4000));
     }
 }
 
@@ -93,7 +93,7 @@ TEST(Development, DemosaicsOneColourAsThatColourUpToTheBorder) {
     const DigitalImage image = Development(developing(mosaic))(film_of(mosaic, colour), k_whole);
     for (int y = 0; y < k_height; ++y)
         for (int x = 0; x < k_width; ++x)
-            for (int c = 0; c < 3; ++c) EXPECT_EQ(value_at(image, x, y, c), of_share(0.25 * c));
+            for (int c = 0; c < 3; ++c) EXPECT_EQ(value_at(image, x, y, c), of_fraction(0.25 * c));
 }
 
 TEST(Development, APartWithItsMarginIsAPartOfTheWhole) {
@@ -117,16 +117,16 @@ TEST(Development, GainsAreThoseGivenOrThoseOfAGreyMean) {
     SensorDesc desc = developing(mosaic);
     desc.image.white_balance = DevelopmentDesc::Gains{1.5, 1, 0.5};
     DigitalImage image = Development(desc)(film_of(mosaic, greenish), k_whole);
-    EXPECT_EQ(value_at(image, 3, 3, 0), of_share(0.3));
-    EXPECT_EQ(value_at(image, 3, 3, 1), of_share(0.4));
-    EXPECT_EQ(value_at(image, 3, 3, 2), of_share(0.1));
+    EXPECT_EQ(value_at(image, 3, 3, 0), of_fraction(0.3));
+    EXPECT_EQ(value_at(image, 3, 3, 1), of_fraction(0.4));
+    EXPECT_EQ(value_at(image, 3, 3, 2), of_fraction(0.1));
     desc.image.white_balance = DevelopmentDesc::GreyWorld{};
     image = Development(desc)(film_of(mosaic, greenish), k_whole);
-    for (int c = 0; c < 3; ++c) EXPECT_EQ(value_at(image, 3, 3, c), of_share(0.4));
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(value_at(image, 3, 3, c), of_fraction(0.4));
     desc.image.demosaic = false;
     image = Development(desc)(film_of(mosaic, greenish), k_whole);
     ASSERT_EQ(image.channels, 1);
-    for (const std::uint16_t value : image.values) EXPECT_EQ(value, of_share(0.4));
+    for (const std::uint16_t value : image.values) EXPECT_EQ(value, of_fraction(0.4));
 }
 
 TEST(Development, LimitsWhatIsBelowBlackAndAboveWhite) {

@@ -1,5 +1,6 @@
 // ctest labels: unit
 #include "core/image/pixel_image.h"
+#include "core/image/preview_exposure.h"
 
 #include <gtest/gtest.h>
 

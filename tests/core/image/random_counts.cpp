@@ -96,8 +96,8 @@ TEST(RandomCounts, NormalPairsFillEqualClassesEqually) {
     constexpr std::size_t k_classes = 20;
     std::vector<double> counts(k_classes * k_classes);
     const auto class_of = [](double z) {
-        const double share = 0.5 * std::erfc(-z / std::numbers::sqrt2);
-        return std::min(static_cast<std::size_t>(share * k_classes), k_classes - 1);
+        const double probability = 0.5 * std::erfc(-z / std::numbers::sqrt2);
+        return std::min(static_cast<std::size_t>(probability * k_classes), k_classes - 1);
     };
     for (int i = 0; i < k_draws; ++i) {
         PathRandom random(PathRandom::seed_of(3, static_cast<std::uint64_t>(i)), 0);

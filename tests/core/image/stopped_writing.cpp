@@ -13,6 +13,7 @@
 #include "core/image/image_file.h"
 #include "core/image/jpeg_file.h"
 #include "core/image/png_file.h"
+#include "core/image/preview_exposure.h"
 #include "tests/support/faults/stop_at_size.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"

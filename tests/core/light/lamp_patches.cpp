@@ -89,9 +89,9 @@ TEST(LampPatches, OfADiskAreAsLarge) {
     std::vector<int> rings(8), quarters(4);
     for (const Lamp& point : points_of(lamp_of(disk_of(0.5, k_samples))))
         for (const Point3& at : fine_points(point)) {
-            const double share = (at.x * at.x + at.y * at.y) / 0.25;
-            ASSERT_LT(share, 1);
-            ++rings[static_cast<std::size_t>(8 * share)];
+            const double fraction = (at.x * at.x + at.y * at.y) / 0.25;
+            ASSERT_LT(fraction, 1);
+            ++rings[static_cast<std::size_t>(8 * fraction)];
             ++quarters[static_cast<std::size_t>((at.x < 0 ? 2 : 0) + (at.y < 0 ? 1 : 0))];
         }
     const int all = k_samples * k_steps * k_steps;

@@ -348,12 +348,12 @@ TEST(Sky, DirectionsShareTheIrradianceAlike) {
             all += direction.normal_irradiance() * direction.towards.z *
                    transmitted(std::acos(direction.towards.z));
         for (const SkyDirection& direction : directions) {
-            double share = 0;
+            double fraction = 0;
             for (std::size_t band = 0; band < 3; ++band)
-                share += direction.normal_irradiance()[band] / all[band] / 3;
-            share *= direction.towards.z * transmitted(std::acos(direction.towards.z));
+                fraction += direction.normal_irradiance()[band] / all[band] / 3;
+            fraction *= direction.towards.z * transmitted(std::acos(direction.towards.z));
             // Parts end where a node of 128 x 256 does: the tenth part of a row or so.
-            EXPECT_NEAR(share, 1.0 / 32, 0.15 / 32);
+            EXPECT_NEAR(fraction, 1.0 / 32, 0.15 / 32);
         }
         // With the index of air they give the irradiance above the water.
         double above = 0;

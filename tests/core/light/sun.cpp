@@ -41,7 +41,7 @@ TEST(Sun, StandsWhereTheSolarPositionAlgorithmSays) {
     for (const KnownSun& known : k_suns) {
         const SunPosition sun = sun_position(known.unix_time, known.latitude, known.longitude);
         EXPECT_NEAR(sun.elevation, known.elevation, 0.01) << known.place;
-        // On the sky, as azimuths are worth less the higher the sun stands.
+        // On the sky, where a difference of azimuth is shorter the higher the sun stands.
         EXPECT_NEAR((sun.azimuth - known.azimuth) * std::cos(known.elevation * k_degree), 0, 0.01)
             << known.place;
     }

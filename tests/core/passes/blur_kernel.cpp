@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/support/forward/blur_shares.h"
+#include "tests/support/forward/blur_fractions.h"
 
 namespace uw {
 namespace {
@@ -31,22 +31,22 @@ std::vector<double> blurred_point(Shape shape, BlurWidth blur, int width, int he
 
 class BothShapes : public testing::TestWithParam<Shape> {};
 
-// Every pixel's share in closed form, from far below a pixel to wider than the image. The point
+// Every pixel's fraction in closed form, from far below a pixel to wider than the image. The point
 // stands off the centre so that its mirror images count. 5e-7 is what the table of aliases and the
 // far mirror images, taken as even here, leave.
 TEST_P(BothShapes, SharesOfAPointInEveryPixel) {
     constexpr int k_width = 61, k_height = 40, k_x = 7, k_y = 31;
     for (const double s : {1e-9, 0.003, 0.05, 0.1, 0.3, 0.7, 1.0, 1.4, 2.5, 5.0, 13.0, 30.0}) {
         const auto image = blurred_point(GetParam(), {s, s}, k_width, k_height, k_x, k_y);
-        const test::BlurShares shares(GetParam(), s, 800);
+        const test::BlurFractions fractions(GetParam(), s, 800);
         double sum = 0, worst = 0;
         for (int y = 0; y < k_height; ++y) {
             for (int x = 0; x < k_width; ++x) {
-                const double share = image[static_cast<std::size_t>(y * k_width + x)];
-                const double truth = shares.mirrored(k_x, k_y, x, y, k_width, k_height);
-                worst = std::max(worst, std::abs(share - truth));
-                EXPECT_GE(share, -1e-8) << s;
-                sum += share;
+                const double fraction = image[static_cast<std::size_t>(y * k_width + x)];
+                const double truth = fractions.mirrored(k_x, k_y, x, y, k_width, k_height);
+                worst = std::max(worst, std::abs(fraction - truth));
+                EXPECT_GE(fraction, -1e-8) << s;
+                sum += fraction;
             }
         }
         EXPECT_LT(worst, 5e-7) << s;
@@ -54,9 +54,9 @@ TEST_P(BothShapes, SharesOfAPointInEveryPixel) {
     }
 }
 
-// The radial profile against the stated formulas. A pixel's share is the mean of the density over
-// the pixel, which to leading order is the density plus its Laplacian / 24; the rest is below a
-// fifth of that from two pixels on. 1e-3: mirror images in a frame this large.
+// The radial profile against the stated formulas. A pixel's fraction is the mean of the density
+// over the pixel, which to leading order is the density plus its Laplacian / 24; the rest is below
+// a fifth of that from two pixels on. 1e-3: mirror images in a frame this large.
 TEST_P(BothShapes, RadialProfileIsTheFormula) {
     constexpr int k_side = 1024, k_center = 512;
     for (const double s : {0.3, 1.0, 5.0, 30.0}) {
@@ -77,11 +77,11 @@ TEST_P(BothShapes, RadialProfileIsTheFormula) {
             const double slope = (density(r + h) - density(r - h)) / (2 * h);
             const double bend = (density(r + h) - 2 * density(r) + density(r - h)) / (h * h);
             const double pixel = std::abs(bend + slope / r) / 24;
-            const double share =
+            const double fraction =
                 image[static_cast<std::size_t>((k_center + dy) * k_side + k_center + dx)];
             // A Gaussian narrower than a pixel is not smooth over the pixel: 2e-4 of the light.
             const double narrow = GetParam() == Shape::gaussian && s < 0.5 ? 2e-4 : 0;
-            EXPECT_NEAR(share, density(r), 1.2 * pixel + 1e-3 * density(r) + 1e-9 + narrow)
+            EXPECT_NEAR(fraction, density(r), 1.2 * pixel + 1e-3 * density(r) + 1e-9 + narrow)
                 << "s " << s << " at " << dx << ", " << dy;
         }
     }

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "tests/support/forward/blur_shares.h"
+#include "tests/support/forward/blur_fractions.h"
 #include "tests/support/forward/forward_scatter_cases.h"
 
 namespace uw {
@@ -48,11 +48,11 @@ TEST_P(ForwardScatterShapes, SingleRangeIsExactAndASlabIsAnImageOfOneRange) {
     light[20 * 61 + 30] = 2;
     const Image range(pixels(plane), 2.5F);
     const Image added = scattered(desc, plane, light, range);
-    const test::BlurShares shares(GetParam(), 2.5 * width_per_metre(desc), 600);
+    const test::BlurFractions fractions(GetParam(), 2.5 * width_per_metre(desc), 600);
     for (int y = 0; y < 41; ++y)
         for (int x = 0; x < 61; ++x)
             EXPECT_NEAR(static_cast<double>(added[static_cast<std::size_t>(y * 61 + x)]),
-                        2 * energy(desc, 2.5) * shares.mirrored(30, 20, x, y, 61, 41), 2e-7);
+                        2 * energy(desc, 2.5) * fractions.mirrored(30, 20, x, y, 61, 41), 2e-7);
     ForwardScatter scatter(desc, plane);
     scatter.add(light, 2.5, k_c);
     Image slab(pixels(plane));
@@ -113,8 +113,8 @@ TEST(ForwardScatter, WaterThatVaries) {
     scatter.finish(added);
     const double factor = k_desc.K * (std::exp(-k_desc.G / k_c * 2.0) - std::exp(-2.0));
     EXPECT_NEAR(sum(added), factor, 1e-6);
-    const test::BlurShares shares(Shape::exponential, 3 * width_per_metre(k_desc), 600);
-    EXPECT_NEAR(added[20 * 41 + 22], factor * shares.mirrored(20, 20, 22, 20, 41, 41), 1e-7);
+    const test::BlurFractions fractions(Shape::exponential, 3 * width_per_metre(k_desc), 600);
+    EXPECT_NEAR(added[20 * 41 + 22], factor * fractions.mirrored(20, 20, 22, 20, 41, 41), 1e-7);
     // In uniform water the two forms are one.
     Image tau(pixels(plane), static_cast<float>(3 * k_c));
     scatter.add({light, length, tau, k_c});

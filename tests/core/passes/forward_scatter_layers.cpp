@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "core/passes/forward_scatter.h"
-#include "tests/support/forward/blur_shares.h"
+#include "tests/support/forward/blur_fractions.h"
 #include "tests/support/forward/forward_direct_sum.h"
 #include "tests/support/forward/forward_scatter_cases.h"
 
@@ -37,7 +37,7 @@ TEST_P(ForwardScatterLayers, DepthEdgeIsTheDirectSum) {
         const float metres =
             x0 < 24 ? 0.5F + 0.03F * static_cast<float>(x0) : 3.0F + 0.1F * static_cast<float>(x0);
         const double s = width_per_metre(desc) * static_cast<double>(metres);
-        const test::BlurShares shares(GetParam(), s, 300);
+        const test::BlurFractions fractions(GetParam(), s, 300);
         for (int y0 = 0; y0 < 48; ++y0) {
             const auto from = static_cast<std::size_t>(y0 * 48 + x0);
             range[from] = metres;
@@ -46,7 +46,7 @@ TEST_P(ForwardScatterLayers, DepthEdgeIsTheDirectSum) {
             for (int y = 0; y < 48; ++y)
                 for (int x = 0; x < 48; ++x)
                     truth[static_cast<std::size_t>(y * 48 + x)] +=
-                        given * shares.mirrored(x0, y0, x, y, 48, 48);
+                        given * fractions.mirrored(x0, y0, x, y, 48, 48);
         }
     }
     const Image added = scattered(desc, plane, light, range);
@@ -62,7 +62,7 @@ TEST_P(ForwardScatterLayers, DepthEdgeIsTheDirectSum) {
 }
 
 // Between the widths of the ladder, which two faint lights span here, a kernel is a mixture: the
-// share of light that lands elsewhere than it should.
+// fraction of light that lands elsewhere than it should.
 TEST_P(ForwardScatterLayers, LadderOfWidthsMovesLittleLight) {
     const ForwardScatterDesc desc = with_shape(GetParam());
     const ScatterPlane plane{65, 65, k_focal, k_focal};
@@ -75,14 +75,14 @@ TEST_P(ForwardScatterLayers, LadderOfWidthsMovesLittleLight) {
         light[32 * 65 + 32] = 1;
         const Image added = scattered(desc, plane, light, range);
         const double s = width_per_metre(desc) * static_cast<double>(range[2]);
-        const test::BlurShares shares(GetParam(), s, 200);
+        const test::BlurFractions fractions(GetParam(), s, 200);
         double moved = 0;
         for (int y = 0; y < 65; ++y)
             for (int x = 0; x < 65; ++x)
                 moved += 0.5 *
                          std::abs(static_cast<double>(added[static_cast<std::size_t>(y * 65 + x)]) /
                                       energy(desc, static_cast<double>(range[2])) -
-                                  shares.mirrored(32, 32, x, y, 65, 65));
+                                  fractions.mirrored(32, 32, x, y, 65, 65));
         worst = std::max(worst, moved);
     }
     EXPECT_LT(worst, 2.5e-3);

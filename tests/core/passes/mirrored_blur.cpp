@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
-#include "tests/support/forward/blur_shares.h"
+#include "tests/support/forward/blur_fractions.h"
 
 namespace uw {
 namespace {
@@ -50,9 +50,9 @@ void expect_same_image(const BlurImage& a, const BlurImage& b, double tolerance)
     for (std::size_t i = 0; i < a.size(); ++i) ASSERT_NEAR(a[i], b[i], tolerance) << "pixel " << i;
 }
 
-TEST(MirroredBlur, IsTheSumOfThePixelsShares) {
+TEST(MirroredBlur, IsTheSumOfThePixelsFractions) {
     const BlurImage image = varied_image();
-    const test::BlurShares shares(Shape::gaussian, 1.5, 40);
+    const test::BlurFractions fractions(Shape::gaussian, 1.5, 40);
     BlurImage truth(image.size());
     for (int y = 0; y < k_blur_height; ++y)
         for (int x = 0; x < k_blur_width; ++x)
@@ -60,7 +60,7 @@ TEST(MirroredBlur, IsTheSumOfThePixelsShares) {
                 for (int u = 0; u < k_blur_width; ++u)
                     truth[static_cast<std::size_t>(y * k_blur_width + x)] +=
                         image[static_cast<std::size_t>(v * k_blur_width + u)] *
-                        shares.mirrored(u, v, x, y, k_blur_width, k_blur_height);
+                        fractions.mirrored(u, v, x, y, k_blur_width, k_blur_height);
     expect_same_image(blurred(image, Shape::gaussian, {1.5, 1.5}), truth, 1e-9);
 }
 

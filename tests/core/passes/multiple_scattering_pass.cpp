@@ -79,7 +79,7 @@ TEST_F(MultipleLights, AgreeWithLightPathsInTheMean) {
 
 // Across the edge of a bright box the water's light has a step, which is narrower than the nodes
 // are apart: what is scattered just before the box.
-TEST_F(MultipleLights, AreAsSharpAsTheSurfacesThatGlow) {
+TEST_F(MultipleLights, AreAsSharpAsTheSurfacesThatEmit) {
     desc_.camera = pinhole_scene(192, 144).camera;
     desc_.geometry = {plane_at_z(3), box({0, -0.3, 1.2}, {0.5, 0.3, 1.5})};
     desc_.geometry[0].reflectance = PerBand{0.05, 0.05, 0.05};
@@ -104,12 +104,12 @@ TEST_F(MultipleLights, AreAsSharpAsTheSurfacesThatGlow) {
     paths.render.samples = 2048;
     const double truth = step(paths);
     EXPECT_GT(truth, 0.1);
-    // 3 % of the light inside: the standard error of the paths is less than 1 %, and the glow is
+    // 3 % of the light inside: the standard error of the paths is less than 1 %, and the halo is
     // that of small angles.
     EXPECT_NEAR(fast, truth, 0.03);
 }
 
-TEST_F(MultipleLights, GiveEachLampItsShare) {
+TEST_F(MultipleLights, AreDividedAmongTheLamps) {
     const Film film = render(desc_);
     for (int y = 0; y < film.height(); y += 5) {
         for (int x = 0; x < film.width(); x += 5) {

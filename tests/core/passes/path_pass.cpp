@@ -107,8 +107,8 @@ TEST_F(PathFilms, HoldTheSingleScatteringOfOtherIntegrators) {
     const Film volume = render();
     EXPECT_NEAR(direct / mean(volume, Layer::direct), 1, 0.01);
     EXPECT_NEAR(backscatter / mean(volume, Layer::backscatter), 1, 0.01);
-    // A path's point is in the first slab or not: 55 296 paths tell the share to 0.4 % if it is a
-    // half; four times that.
+    // A path's point is in the first slab or not: 55 296 paths tell the fraction to 0.4 % if it is
+    // a half; four times that.
     EXPECT_NEAR(first / mean(volume, Layer::backscatter_first), 1, 0.016);
     EXPECT_LT(first, 0.95 * backscatter);
     EXPECT_EQ(depth, mean(volume, Layer::depth));

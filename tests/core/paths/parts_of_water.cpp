@@ -15,11 +15,11 @@ namespace {
 // is scattered out of the ray: 1 - e^-tau.
 TEST(LitSurfaces, FillTheWaterOfAWhiteFurnace) {
     PathScene scene({{0, 0.3}, {0, 1.0}, {0, 2.0}}, 0.8);
-    ClosedFormSurfaces::Material glowing{{0.5, 0.5, 0.2}, {}};
-    glowing.more.emission = Spectrum{0.5, 0.5, 0.8};
+    ClosedFormSurfaces::Material emissive{{0.5, 0.5, 0.2}, {}};
+    emissive.more.emission = Spectrum{0.5, 0.5, 0.8};
     auto room = std::make_unique<ClosedFormSurfaces>();
-    room->add_box({-1, -1.5, -1}, {1, 1, 2}, glowing);
-    room->add_sphere({0.4, 0.3, 1}, 0.4, glowing);
+    room->add_box({-1, -1.5, -1}, {1, 1, 2}, emissive);
+    room->add_sphere({0.4, 0.3, 1}, 0.4, emissive);
     scene.surfaces = std::move(room);
     const PathTracer tracer(scene.lit());
     // The radiance that a white surface reflects.

@@ -53,15 +53,15 @@ TEST_P(WhiteFurnaces, AreWhiteInEveryDirection) {
     PathScene scene({{0, 0.3}, {0, 1.0}, {0, 2.0}}, 0.8);
     const FaintLamp& lamp = GetParam();
     if (lamp.intensity >= 0) scene.add_lamp({0.1, -0.2, 0.3}, lamp.intensity);
-    const auto glowing = [](double a, double b, double c) {
+    const auto emissive = [](double a, double b, double c) {
         ClosedFormSurfaces::Material material{{a, b, c}, {}};
         material.more.emission = Spectrum{1 - a, 1 - b, 1 - c};
         return material;
     };
     auto room = std::make_unique<ClosedFormSurfaces>();
-    room->add_box({-1, -1.5, -1}, {1, 1, 2}, glowing(0.5, 0.5, 0.2));
-    room->add_sphere({0.4, 0.3, 1}, 0.4, glowing(0.8, 0.2, 0.7));
-    room->add_box({-0.9, -1.2, 0.2}, {-0.3, -0.1, 0.9}, glowing(0.1, 0.6, 0.3));
+    room->add_box({-1, -1.5, -1}, {1, 1, 2}, emissive(0.5, 0.5, 0.2));
+    room->add_sphere({0.4, 0.3, 1}, 0.4, emissive(0.8, 0.2, 0.7));
+    room->add_box({-0.9, -1.2, 0.2}, {-0.3, -0.1, 0.9}, emissive(0.1, 0.6, 0.3));
     scene.surfaces = std::move(room);
     const PathTracer tracer(scene.lit());
     Deviations deviations;

@@ -70,10 +70,10 @@ TEST_F(HaloOfStripes, IsEquallyStrongAllOverTheImage) {
                              std::span<double> radiance) {
         std::ranges::fill(radiance, 1 + std::cos(k * azimuth(sample.ray.direction)));
     };
-    const SurfaceHalo glow(rays, scene, lighting, intervals, bands, k_width * k_height, stripes,
+    const SurfaceHalo halo(rays, scene, lighting, intervals, bands, k_width * k_height, stripes,
                            nodes);
     const PointSpread spread(*scene.medium, intervals, k_distance);
-    ASSERT_EQ(glow.interval_count(), spread.interval_count());
+    ASSERT_EQ(halo.interval_count(), spread.interval_count());
     double of_stripes = 0;
     for (std::size_t interval = 0; interval < spread.interval_count(); ++interval) {
         of_stripes += static_cast<double>(
@@ -88,8 +88,8 @@ TEST_F(HaloOfStripes, IsEquallyStrongAllOverTheImage) {
             const Vector3 direction = rays.refracted_ray(nodes[n].x, nodes[n].y)->direction;
             stripe.push_back(std::cos(k * azimuth(direction)));
             light.push_back(0);
-            for (std::size_t i = 0; i < glow.interval_count(); ++i)
-                light.back() += static_cast<double>(glow.of_node(n)[i * bands]);
+            for (std::size_t i = 0; i < halo.interval_count(); ++i)
+                light.back() += static_cast<double>(halo.of_node(n)[i * bands]);
         }
         // 8 %: at 27 degrees from the axis, as in the outermost parts, pixels are 6 % longer than
         // square ones of the same area, and the rest is the error of fitting the blur's levels.

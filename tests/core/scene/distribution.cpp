@@ -23,7 +23,7 @@ std::vector<double> draws_of(const NumberDistribution& distribution, const char*
     return values;
 }
 
-/// The largest difference between the share of draws up to a value and its probability
+/// The largest difference between the fraction of draws up to a value and its probability
 /// (Kolmogorov and Smirnov), times the square root of their number.
 double kolmogorov_smirnov(std::vector<double> values,
                           const std::function<double(double)>& probability_up_to) {

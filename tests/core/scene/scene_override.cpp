@@ -165,7 +165,7 @@ TEST(SceneOverride, wrongFormIsWrongUsage) {
     }
 }
 
-TEST(SceneOverride, errorsNameTheOverrideAndTheMend) {
+TEST(SceneOverride, errorsNameTheOverrideAndTheHint) {
     const std::vector<std::pair<std::string, std::string>> cases{
         {"water.bnds=[1, 2, 3]",
          "--set water.bnds=[1, 2, 3]: water.bnds: unknown key; did you mean 'bands'?"},

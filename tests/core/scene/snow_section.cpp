@@ -43,7 +43,7 @@ TEST(SnowSection, HasDefaults) {
 
 using SnowErrors = SceneErrors;
 
-TEST_F(SnowErrors, AreOneLineWithAMend) {
+TEST_F(SnowErrors, AreOneLineWithAHint) {
     check(
         k_camera + "water:\n  snow: ",
         {

@@ -110,7 +110,7 @@ TEST(Variations, RowsAreDrawnTogetherWhetherInTheSceneOrInATable) {
     EXPECT_NEAR(clear, k_drawn / 4, 124);  // 4.5 standard deviations
 }
 
-TEST(Variations, WhatIsWrongIsSaidWithItsPlaceAndMend) {
+TEST(Variations, ErrorsNameThePlaceAndTheHint) {
     const auto expect = [](const std::string& section, const std::string& message) {
         EXPECT_EQ(refusal(section), message);
     };

@@ -46,9 +46,9 @@ def render_file(scene, path):
 
 def pixels_of(image, layer, where):
     """The coverage of what a pixel shows most of."""
-    ids, shares = (numpy.concatenate([image.get(f"{layer}{k:02}", pair) for k in range(3)], axis=-1)
+    ids, fractions = (numpy.concatenate([image.get(f"{layer}{k:02}", pair) for k in range(3)], axis=-1)
                    for pair in ("RB", "GA"))
-    return numpy.where(ids == ids[where][0], shares, 0).sum(axis=-1)
+    return numpy.where(ids == ids[where][0], fractions, 0).sum(axis=-1)
 
 
 CENTRE, CORNER = (16, 26), (0, 0)  # of the box, and of the wall

@@ -121,7 +121,7 @@ TEST(PictureNumbers, HaveAContrastThatUnevenLightDoesNotRaise) {
     EXPECT_GT(measure_picture(layers, k_all).contrast, 0.8) << "no pattern";
 }
 
-TEST(PictureNumbers, CountTheShareOfPixelsAboveARatio) {
+TEST(PictureNumbers, CountTheFractionOfPixelsAboveARatio) {
     const Plane signal(20, 10, [](int x, int) { return x; });
     const Plane veil = even(2);
     PictureLayers layers = picture();

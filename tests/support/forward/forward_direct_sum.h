@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/support/forward/blur_shares.h"
+#include "tests/support/forward/blur_fractions.h"
 
 namespace uw::test {
 
@@ -21,11 +21,11 @@ inline std::vector<double> direct_sum(const ForwardScatterDesc& desc, double c, 
         if (light[from] == 0) continue;
         const double r = range[from];
         const double gained = desc.K * (std::exp(-desc.G * r) - std::exp(-c * r));
-        const BlurShares shares(desc.shape, focal * desc.B * r / (2 * std::numbers::pi), 200);
+        const BlurFractions fractions(desc.shape, focal * desc.B * r / (2 * std::numbers::pi), 200);
         for (int j = 0; j < pixels; ++j)
             sum[static_cast<std::size_t>(j)] +=
                 light[from] * gained *
-                shares.mirrored(i % width, i / width, j % width, j / width, width, height);
+                fractions.mirrored(i % width, i / width, j % width, j / width, width, height);
     }
     return sum;
 }

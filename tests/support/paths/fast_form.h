@@ -47,7 +47,7 @@ struct LightOfImage {
         height = film.height();
         bands = plan.band_count();
         total.assign(bands, 0.0);
-        const double share = 1.0 / (width * height);
+        const double weight = 1.0 / (width * height);
         const auto value = [&](Layer layer, int x, int y, std::size_t band) {
             return static_cast<double>(
                 film.pixel(x, y)[static_cast<std::size_t>(plan.first_channel(layer)) + band]);
@@ -57,8 +57,8 @@ struct LightOfImage {
                 for (std::size_t b = 0; b < bands; ++b) {
                     light.push_back(value(Layer::multiple, x, y, b));
                     error.push_back(value(Layer::error, x, y, b));
-                    total[b] += share * (light.back() + value(Layer::direct, x, y, b) +
-                                         value(Layer::backscatter, x, y, b));
+                    total[b] += weight * (light.back() + value(Layer::direct, x, y, b) +
+                                          value(Layer::backscatter, x, y, b));
                 }
             }
         }
@@ -115,7 +115,7 @@ struct FastFormDeviations {
         }
     }
 
-    /// The mean of a band's squares over the blocks from one share of them to another, by light.
+    /// The mean of a band's squares over the blocks from one fraction of them to another, by light.
     double mean_square(std::size_t band, double from = 0, double to = 1) const {
         const std::vector<double>& all = squares[band];
         const auto first = static_cast<std::size_t>(from * static_cast<double>(all.size()));

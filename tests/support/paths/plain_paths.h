@@ -43,7 +43,7 @@ class PlainPaths {
     void trace(Point3 x, Vector3 d, Kinds& kinds) {
         const double c = scene_.absorption + scene_.scattering;
         double weight = 1;
-        double share = 1;  // of the water's light that comes along `d`
+        double water_weight = 1;  // of next-event estimation along `d`, against from_lobe
         int scatterings = 0, reflections = 0;
         bool begins_in_water = false;
         const auto add = [&](int more_scatterings, int more_reflections, double value) {
@@ -56,7 +56,7 @@ class PlainPaths {
         };
         while (true) {
             const Hit hit = first_hit(x, d);
-            add(1, 0, share * from_water(x, d, hit.distance));
+            add(1, 0, water_weight * from_water(x, d, hit.distance));
             if (hit.distance < k_infinity)
                 add(0, 1, std::exp(-c * hit.distance) * from_surface(x + hit.distance * d, hit));
             const double way = -std::log(1 - uniform()) / c;
@@ -70,7 +70,7 @@ class PlainPaths {
                 };
                 add(1, 0, from_lobe(x, density));
                 d = around(d, scattering_cosine());
-                share = share_of(x, d, density);
+                water_weight = mis_weight(x, d, density);
             } else if (hit.distance < k_infinity) {
                 x = x + hit.distance * d;
                 weight *= scene_.reflectance;
@@ -80,7 +80,7 @@ class PlainPaths {
                 };
                 add(1, 0, from_lobe(x, density));
                 d = around(hit.normal, std::sqrt(1 - uniform()));
-                share = share_of(x, d, density);
+                water_weight = mis_weight(x, d, density);
             } else {
                 return;
             }
@@ -172,7 +172,7 @@ class PlainPaths {
     }
     /// The part of what comes along `d` that counts if `d` was drawn with `density`.
     template <class Density>
-    double share_of(const Point3& x, const Vector3& d, const Density& density) const {
+    double mis_weight(const Point3& x, const Vector3& d, const Density& density) const {
         return density(d) / (density(d) + lobe_density(x, d));
     }
     /// The other part, along a direction drawn for it.

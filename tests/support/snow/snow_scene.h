@@ -4,7 +4,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/passes/marine_snow.h"
+#include "render/snow/snow_model.h"
 #include "tests/support/image_of.h"
 #include "tests/support/test_scene.h"
 

@@ -37,7 +37,7 @@ inline double mean_of(const Film& film, std::size_t channel) {
 
 /// The mean over seeds is the image of the same coefficients without particles: within four
 /// standard errors, and half a per cent for what single particles hide of the water's light, of
-/// which the share behind them is interpolated over the image and the same for all bands.
+/// which the fraction behind them is interpolated over the image and the same for all bands.
 inline void expect_mean(SceneDesc desc, const SceneDesc& without) {
     const Film smooth = image_of(without, {.layers = "total"});
     constexpr int k_seeds = 150;

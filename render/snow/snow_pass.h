@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "camera/camera.h"
@@ -12,18 +11,13 @@
 #include "core/image/image_quantity.h"
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
-#include "core/passes/marine_snow.h"
 #include "core/passes/pass.h"
-#include "core/passes/snow_image.h"
 #include "core/scene/scene_desc.h"
 #include "core/scene/water_desc.h"
+#include "render/snow/snow_image.h"
+#include "render/snow/snow_model.h"
 
 namespace uw {
-
-/// Makes the snow of a scene for a camera. The coefficients of `medium` contain the snow's mean.
-/// Throws as without_snow.
-std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
-                                                 const Medium& medium);
 
 /// A camera at one time of an exposure.
 struct ExposureView {

@@ -26,18 +26,18 @@ inline double blur_in_corner(ForwardScatterDesc::Shape shape, double s, double x
 }
 
 /// Fractions of a pixel's light that land in the pixels at offsets 0..reach in either direction.
-class BlurShares {
+class BlurFractions {
   public:
-    BlurShares(ForwardScatterDesc::Shape shape, double s, int reach)
-        : reach_(reach), side_(static_cast<std::size_t>(reach) + 1), shares_(side_ * side_) {
+    BlurFractions(ForwardScatterDesc::Shape shape, double s, int reach)
+        : reach_(reach), side_(static_cast<std::size_t>(reach) + 1), fractions_(side_ * side_) {
         const auto corner = [&](double x, double y) { return blur_in_corner(shape, s, x, y); };
         double inside = 0;
         for (int j = 0; j <= reach; ++j) {
             for (int i = 0; i <= reach; ++i) {
-                const double share = corner(i + 0.5, j + 0.5) - corner(i - 0.5, j + 0.5) -
-                                     corner(i + 0.5, j - 0.5) + corner(i - 0.5, j - 0.5);
-                shares_[index(i, j)] = share;
-                inside += (i > 0 ? 2 : 1) * (j > 0 ? 2 : 1) * share;
+                const double fraction = corner(i + 0.5, j + 0.5) - corner(i - 0.5, j + 0.5) -
+                                        corner(i + 0.5, j - 0.5) + corner(i - 0.5, j - 0.5);
+                fractions_[index(i, j)] = fraction;
+                inside += (i > 0 ? 2 : 1) * (j > 0 ? 2 : 1) * fraction;
             }
         }
         outside_ = 1 - inside;
@@ -52,7 +52,7 @@ class BlurShares {
             for (int b = nearest(v - y, height); std::abs(b) <= reach_; b += 2 * height)
                 for (int u : {x0, -1 - x0})
                     for (int a = nearest(u - x, width); std::abs(a) <= reach_; a += 2 * width)
-                        sum += shares_[index(std::abs(a), std::abs(b))];
+                        sum += fractions_[index(std::abs(a), std::abs(b))];
         }
         return sum;
     }
@@ -70,7 +70,7 @@ class BlurShares {
 
     int reach_;
     std::size_t side_;
-    std::vector<double> shares_;
+    std::vector<double> fractions_;
     double outside_ = 0;
 };
 

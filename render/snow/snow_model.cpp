@@ -1,4 +1,4 @@
-#include "core/passes/marine_snow.h"
+#include "render/snow/snow_model.h"
 
 #include <fmt/format.h>
 
@@ -200,14 +200,14 @@ void BeyondSnow::add_beyond(const Ray& ray, double begin, std::span<const double
     const double from = std::max(begin, parts_.front().range);
     const double end = distances.back();
     if (!(end > from)) return;
-    thread_local std::vector<double> stops;
-    thread_local InScatter light;
-    stops.clear();
+    std::vector<double> stops;
+    stops.reserve(distances.size() + parts_.size());
     for (const double distance : distances)
         if (distance > from) stops.push_back(distance);
     for (const Part& part : parts_)
         if (part.range > from && part.range < end) stops.push_back(part.range);
     std::ranges::sort(stops);
+    InScatter light;
     snow_->in_scatter_from(ray, from, stops, light);
     const auto up_to = [&](double distance, std::size_t lamp) {
         if (!(distance > from)) return Spectrum{};
@@ -239,6 +239,72 @@ std::vector<BeyondSnow::Part> SnowModel::parts() const {
     for (std::size_t k = 0; k < ranges.size(); ++k)
         parts.push_back({ranges[k], field.classes()[k].attenuation() / all});
     return parts;
+}
+
+namespace {
+
+// Particles are drawn if they cover this fraction of a pixel, unless there are too many.
+constexpr double k_min_coverage = 1e-3;
+// Fraction of a pixel above which the eye would miss single particles that are not drawn.
+constexpr double k_visible_coverage = 0.02;
+// Optical depth, in the clearest band, behind which a thousandth of the light is left.
+constexpr double k_max_drawn_depth = 6.9;
+constexpr double k_max_drawn_distance = 200;  // m
+// Ratio of successive coverages that are tried.
+constexpr double k_coverage_step = 1.05;
+
+/// Returns the solid angle in water of the whole image [sr].
+double view_angle(const Camera& camera) {
+    constexpr int k_steps = 32;
+    const auto ray = [&](int i, int j) {
+        return camera.refracted_ray(static_cast<double>(i) / k_steps * camera.width(),
+                                    static_cast<double>(j) / k_steps * camera.height());
+    };
+    double sum = 0;
+    for (int j = 0; j < k_steps; ++j)
+        for (int i = 0; i < k_steps; ++i) {
+            const auto a = ray(i, j), b = ray(i + 1, j), c = ray(i, j + 1);
+            if (a && b && c)
+                sum += glm::length(
+                    glm::cross(b->direction - a->direction, c->direction - a->direction));
+        }
+    return sum;
+}
+
+}  // namespace
+
+std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
+                                                 const Medium& medium) {
+    auto model = std::make_shared<SnowModel>(SnowModel{.field = SnowField(desc),
+                                                       .water = without_snow(desc, medium),
+                                                       .alone = snow_alone(desc, medium)});
+    const std::vector<SnowClass>& classes = model->field.classes();
+    const double min_c = medium.uniform.attenuation().least(medium.wavelengths_nm.size());
+    const double max_distance =
+        std::min(k_max_drawn_distance, k_max_drawn_depth / std::max(min_c, 1e-6));
+    const double view = view_angle(camera);
+    const double pixel = view / camera.width() / camera.height();
+    model->ranges.assign(classes.size(), max_distance);
+    double wanted = 0;  // expected number of particles in view
+    for (double coverage = k_min_coverage; view > 0; coverage *= k_coverage_step) {
+        double count = 0;
+        for (std::size_t k = 0; k < classes.size(); ++k) {
+            double& range = model->ranges[k];
+            range = std::min(max_distance, std::sqrt(classes[k].mean_area / (coverage * pixel)));
+            count += classes[k].number * view * range * range * range / 3;
+        }
+        model->expected_count = count;
+        if (wanted == 0) wanted = count;
+        if (count > desc.most) continue;
+        if (coverage > k_visible_coverage)
+            model->warning = fmt::format(
+                "{}: of about {:.3g} particles in view {:.3g} are drawn, those that cover {:.2g} % "
+                "of a pixel or more, and the others are their mean; give a greater least diameter "
+                "or a smaller number, or most",
+                desc.where, wanted, count, 100 * coverage);
+        break;
+    }
+    return model;
 }
 
 }  // namespace uw

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/passes/snow_image.h"
+#include "render/snow/snow_image.h"
 
 #include <gtest/gtest.h>
 

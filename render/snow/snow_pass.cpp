@@ -1,6 +1,4 @@
-#include "render/marine_snow.h"
-
-#include <fmt/format.h>
+#include "render/snow/snow_pass.h"
 
 #include <algorithm>
 #include <array>
@@ -12,72 +10,6 @@
 #include "core/base/parallel.h"
 
 namespace uw {
-
-namespace {
-
-// Particles are drawn if they cover this fraction of a pixel, unless there are too many.
-constexpr double k_min_coverage = 1e-3;
-// Fraction of a pixel above which the eye would miss single particles that are not drawn.
-constexpr double k_visible_coverage = 0.02;
-// Optical depth, in the clearest band, behind which a thousandth of the light is left.
-constexpr double k_max_drawn_depth = 6.9;
-constexpr double k_max_drawn_distance = 200;  // m
-// Ratio of successive coverages that are tried.
-constexpr double k_coverage_step = 1.05;
-
-/// Returns the solid angle in water of the whole image [sr].
-double view_angle(const Camera& camera) {
-    constexpr int k_steps = 32;
-    const auto ray = [&](int i, int j) {
-        return camera.refracted_ray(static_cast<double>(i) / k_steps * camera.width(),
-                                    static_cast<double>(j) / k_steps * camera.height());
-    };
-    double sum = 0;
-    for (int j = 0; j < k_steps; ++j)
-        for (int i = 0; i < k_steps; ++i) {
-            const auto a = ray(i, j), b = ray(i + 1, j), c = ray(i, j + 1);
-            if (a && b && c)
-                sum += glm::length(
-                    glm::cross(b->direction - a->direction, c->direction - a->direction));
-        }
-    return sum;
-}
-
-}  // namespace
-
-std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
-                                                 const Medium& medium) {
-    auto model = std::make_shared<SnowModel>(SnowModel{.field = SnowField(desc),
-                                                       .water = without_snow(desc, medium),
-                                                       .alone = snow_alone(desc, medium)});
-    const std::vector<SnowClass>& classes = model->field.classes();
-    const double min_c = medium.uniform.attenuation().least(medium.wavelengths_nm.size());
-    const double max_distance =
-        std::min(k_max_drawn_distance, k_max_drawn_depth / std::max(min_c, 1e-6));
-    const double view = view_angle(camera);
-    const double pixel = view / camera.width() / camera.height();
-    model->ranges.assign(classes.size(), max_distance);
-    double wanted = 0;  // expected number of particles in view
-    for (double coverage = k_min_coverage; view > 0; coverage *= k_coverage_step) {
-        double count = 0;
-        for (std::size_t k = 0; k < classes.size(); ++k) {
-            double& range = model->ranges[k];
-            range = std::min(max_distance, std::sqrt(classes[k].mean_area / (coverage * pixel)));
-            count += classes[k].number * view * range * range * range / 3;
-        }
-        model->expected_count = count;
-        if (wanted == 0) wanted = count;
-        if (count > desc.most) continue;
-        if (coverage > k_visible_coverage)
-            model->warning = fmt::format(
-                "{}: of about {:.3g} particles in view {:.3g} are drawn, those that cover {:.2g} % "
-                "of a pixel or more, and the others are their mean; give a greater least diameter "
-                "or a smaller number, or most",
-                desc.where, wanted, count, 100 * coverage);
-        break;
-    }
-    return model;
-}
 
 namespace {
 
@@ -194,9 +126,7 @@ void SnowLighting::radiance(const Point3& x, const Ray& ray, double distance,
                             std::span<double> radiance) const {
     const std::vector<Lamp>& emitters = *scene_.emitters;
     const std::size_t constituents = scene_.medium->constituents.size();
-    thread_local std::vector<double> to_camera, column;
-    to_camera.assign(constituents, 0.0);
-    column.resize(constituents);
+    std::vector<double> to_camera(constituents), column(constituents);
     if (constituents > 0) scene_.field->column(ray.origin, x, to_camera);
     std::ranges::fill(radiance, 0.0);
     for (std::size_t j = 0; j < emitters.size(); ++j) {
@@ -253,17 +183,17 @@ Vector3 offset_in_plane(const Ray& ray, const Point3& x, const Vector3& directio
 /// Returns the map from pixels to metres in that plane; none if the image has no neighbouring rays.
 std::optional<PlaneMap> plane_from_pixels(const Camera& camera, const ImagePoint& at,
                                           const Ray& ray, const Point3& x, const AcrossAxes& axes) {
-    constexpr double k_step = 0.5;  // pixels
+    constexpr double k_delta = 0.5;  // pixels
     const auto moved = [&](double dx, double dy) -> std::optional<std::array<double, 2>> {
         for (const double sign : {1.0, -1.0}) {
             const auto neighbour = camera.refracted_ray(at.x + sign * dx, at.y + sign * dy);
             if (!neighbour) continue;
-            const Vector3 offset = sign / k_step * offset_in_plane(*neighbour, x, ray.direction);
+            const Vector3 offset = sign / k_delta * offset_in_plane(*neighbour, x, ray.direction);
             return std::array<double, 2>{glm::dot(offset, axes.u), glm::dot(offset, axes.v)};
         }
         return std::nullopt;
     };
-    const auto right = moved(k_step, 0), down = moved(0, k_step);
+    const auto right = moved(k_delta, 0), down = moved(0, k_delta);
     if (!right || !down) return std::nullopt;
     const PlaneMap map{(*right)[0], (*right)[1], (*down)[0], (*down)[1]};
     if (!(std::abs(map.determinant()) > 0)) return std::nullopt;
@@ -354,9 +284,8 @@ void place(const SnowPlacing& scene, const SnowParticle& particle, double range,
     if (!is_within) end = end_of_sight();
     if (end <= distance) return;
     const std::size_t bands = scene.desc.reflectance.size();
-    thread_local std::vector<double> radiance;
-    radiance.resize(bands);
-    scene.lighting.radiance(x, ray, distance, radiance);
+    Spectrum radiance;
+    scene.lighting.radiance(x, ray, distance, radiance.first(bands));
     // The coefficients include the attenuation by the particles in front of this one, which are
     // also drawn over it: undo the former.
     const double factor =
@@ -391,7 +320,7 @@ void place_layer(const SnowPlacing& scene, const CellLayer& layer, const PixelWi
         first[i] = cell_of(bounds.min[axis] - margin - moved[axis], size_class.edge);
         last[i] = cell_of(bounds.max[axis] + margin - moved[axis], size_class.edge);
     }
-    thread_local std::vector<SnowParticle> particles;
+    std::vector<SnowParticle> particles;
     for (std::int64_t j = first[0]; j <= last[0]; ++j)
         for (std::int64_t k = first[1]; k <= last[1]; ++k) {
             const SnowCell cell{layer.first, j, k};

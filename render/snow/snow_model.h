@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "camera/camera.h"
 #include "core/base/vector_math.h"
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
@@ -168,5 +169,10 @@ struct SnowModel {
     /// The parts of BeyondSnow.
     std::vector<BeyondSnow::Part> parts() const;
 };
+
+/// Makes the snow of a scene for a camera. The coefficients of `medium` contain the snow's mean.
+/// Throws as without_snow.
+std::shared_ptr<const SnowModel> make_snow_model(const SnowDesc& desc, const Camera& camera,
+                                                 const Medium& medium);
 
 }  // namespace uw

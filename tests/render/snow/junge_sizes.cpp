@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/passes/marine_snow.h"
+#include "render/snow/snow_model.h"
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ TEST(JungeSizes, SharesAndAreasAreThoseOfThePowerLaw) {
     }
 }
 
-TEST(JungeSizes, QuantilesInvertTheShare) {
+TEST(JungeSizes, QuantilesInvertTheFraction) {
     for (const double exponent : {0.0, 1.0, 2.5, 4.0, 10.0}) {
         const JungeSizes sizes(exponent, k_least, k_greatest);
         const double a = 2e-4, b = 4e-4;  // an octave, as they are drawn

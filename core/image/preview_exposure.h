@@ -6,6 +6,11 @@
 
 namespace uw {
 
+/// The factor that brings the brighter parts of the film to a luminance of 0.8: the 99th percentile
+/// over the pixels with a ray (alpha > 0) and finite values that show no lamp, or the brightest
+/// pixel if fewer than 1 % are not black. Empty if all are black, which the caller should report.
+std::optional<double> automatic_exposure(const Film& film);
+
 /// How the exposure of the previews of a run's images is chosen.
 struct PreviewExposure {
     enum class Kind {

@@ -1,4 +1,4 @@
-#include "core/passes/snow_image.h"
+#include "render/snow/snow_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -281,8 +281,7 @@ void Footprint::add_soft(const std::array<double, 2>& at, double weight, const P
     const PixelWindow whole = around(at, half_), inside = intersection(window, whole);
     if (inside.x0 >= inside.x1 || inside.y0 >= inside.y1) return;
     const PixelWindow& drawn = is_scaled_ ? inside : whole;
-    thread_local Grid2D<double> samples;
-    samples.assign(drawn.width(), drawn.height());
+    Grid2D<double> samples(drawn.width(), drawn.height());
     const double sum = count_samples(at, drawn, samples);
     if (!(sum > 0)) return;
     const double per_sample = weight * (is_scaled_ ? scale_ / (samples_ * samples_) : 1 / sum);
@@ -399,9 +398,8 @@ std::span<float> SnowImage::values(int x, int y) {
 
 void SnowImage::draw(const SnowSplat& splat, std::span<const float> radiance,
                      const PixelWindow& tile) {
-    thread_local Grid2D<double> fractions;
     const PixelWindow inside = intersection(splat.footprint.bounds(), tile);
-    fractions.assign(inside.width(), inside.height());
+    Grid2D<double> fractions(inside.width(), inside.height());
     splat.footprint.add_fractions(inside, fractions);
     for (int y = inside.y0; y < inside.y1; ++y)
         for (int x = inside.x0; x < inside.x1; ++x) {
@@ -458,7 +456,7 @@ WaterVeil::WaterVeil(const RaySource& rays, const Integrator& integrator,
         const auto ray = rays.refracted_ray(std::min(i * k_spacing, rays.width()),
                                             std::min(j * k_spacing, rays.height()));
         if (!ray) return;
-        thread_local InScatter light;
+        InScatter light;
         integrator.in_scatter(*ray, distances_, light);
         Light sum;
         double before = 0, from = 0;

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/passes/marine_snow.h"
+#include "render/snow/snow_model.h"
 
 #include <gtest/gtest.h>
 
