@@ -16,9 +16,11 @@
 #include "core/base/text.h"
 #include "core/geometry/mesh.h"
 #include "core/image/camera_sensor.h"
+#include "core/image/colour.h"
 #include "core/image/image_file.h"
 #include "core/light/integrator_table.h"
 #include "core/scene/pose_file.h"
+#include "render/derivatives.h"
 #include "render/scene_loading.h"
 
 namespace uw {
@@ -36,11 +38,11 @@ double model_error(const SceneDesc& scene) {
     return has_all_light(scene) ? 1e-2 : 1e-3;
 }
 
-/// The steps of unknowns for central differences, to either side. Light is interpolated, so that
-/// smaller steps would measure the tables; the error of larger ones grows with the square. With all
-/// light, smaller steps would measure that the random paths differ on both sides: such noise looks
-/// like information about unknowns that compensate each other, absorption and scattering, which
-/// then move too little.
+/// The steps of unknowns within which derivatives serve, to either side, and those of central
+/// differences. Light is interpolated, so that smaller steps would measure the tables; the error of
+/// larger ones grows with the square. With all light, smaller steps would measure that the random
+/// paths differ on both sides: such noise looks like information about unknowns that compensate
+/// each other, absorption and scattering, which then move too little.
 double step_of(const SceneUnknown& unknown, bool has_all_light) {
     if (!has_all_light) return 1e-2 * unknown.scale;
     return 0.3 * std::max(std::abs(unknown.start), 0.25 * unknown.scale);
@@ -190,6 +192,56 @@ ImageScene scene_of_picture(const SceneDesc& scene, const ObservedPicture& pictu
     return {std::move(posed), picture.choice};
 }
 
+/// What is compared of the light of a scene's image: a sensor's numbers, or red, green and blue, or
+/// their mean.
+class ComparedLight {
+  public:
+    using Colours = std::array<double, 3>;
+
+    /// `image`: the camera of the pixels, which may be coarser than those of the scene.
+    ComparedLight(const SceneDesc& scene, const CameraDesc& image, std::size_t colours)
+        : count_(colours),
+          bands_(scene.water.bands_nm.size()),
+          camera_(image),
+          rgb_(make_band_colour(scene.render.colour, scene.water.bands_nm)) {
+        if (scene.camera.sensor) numbers_.emplace(scene);
+    }
+
+    Colours colours(int x, int y, const Spectrum& radiance) const {
+        if (!numbers_) return of_bands(radiance);
+        const Spectrum irradiance = factor(x, y) * radiance;
+        Colours numbers{};
+        for (std::size_t k = 0; k < count_; ++k) numbers[k] = numbers_->at(irradiance, k);
+        return numbers;
+    }
+    /// Their change with the light: the sum over the bands of `change`.
+    Colours change(int x, int y, const Spectrum& change) const {
+        if (!numbers_) return of_bands(change);
+        const double per_radiance = factor(x, y);
+        Colours numbers{};
+        for (std::size_t k = 0; k < count_; ++k)
+            for (std::size_t b = 0; b < bands_; ++b)
+                numbers[k] += numbers_->slope({}, k, b) * per_radiance * change[b];
+        return numbers;
+    }
+
+  private:
+    Colours of_bands(const Spectrum& radiance) const {
+        const LinearRgb rgb = rgb_(radiance);
+        if (count_ == 1) return {(rgb[0] + rgb[1] + rgb[2]) / 3};
+        return {rgb[0], rgb[1], rgb[2]};
+    }
+    double factor(int x, int y) const {
+        return numbers_->photoelectrons().irradiance_factor(camera_.lens_ray(x + 0.5, y + 0.5),
+                                                            camera_.focus_vergence());
+    }
+
+    std::size_t count_, bands_;
+    Camera camera_;
+    BandColour rgb_;
+    std::optional<MeanNumbers> numbers_;
+};
+
 PixelImage read_picture(const std::filesystem::path& file) {
     const std::string ending = file.extension().string();
     const bool holds_light = ending == ".exr" || ending == ".hdr" || ending == ".EXR";
@@ -249,6 +301,7 @@ PictureResiduals::PictureResiduals(const SceneUnknowns& unknowns,
     top_ = (scene.camera.height - cell_side_ * height_) / 2;
     pixels_per_side_ = std::clamp(
         static_cast<int>(std::ceil(std::sqrt(k_min_pixels / (width_ * height_)))), 1, cell_side_);
+    first_cell_.push_back(0);
     for (std::size_t i = 0; i < files_.size(); ++i) {
         names_.push_back(files_[i].file.filename().string());
         renderers_.emplace_back();
@@ -319,6 +372,7 @@ void PictureResiduals::read(std::size_t picture, const SceneDesc& scene) {
     brightest_.push_back(brightest);
     for (const std::optional<Cell>& cell : found)
         if (cell && brightest > 0) cells_.push_back(*cell);
+    first_cell_.push_back(cells_.size());
 }
 
 void PictureResiduals::weigh(Weights by) {
@@ -354,57 +408,71 @@ void PictureResiduals::show_cells(SceneDesc& scene, int side) const {
 
 PictureResiduals::Prediction PictureResiduals::predict(std::span<const double> values,
                                                        Light light) {
-    SceneDesc scene = unknowns_.scene(values);
-    const int side = light == Light::of_the_scene ? pixels_per_side_ : 1;
-    if (light == Light::scattered_once && has_all_light_) {
-        scene.render.integrator = RenderDesc::Integrator::volume;
-        scene.render.scattering = RenderDesc::Scattering::single;
-    }
     Prediction prediction(cells_.size());
-    std::size_t next = 0;
-    for (std::size_t picture = 0; picture < files_.size(); ++picture) {
-        throw_if_stopped();
-        const ImageScene whole = scene_of_picture(scene, files_[picture]);
-        Renderer& renderer = renderers_[picture];
-        renderer.set_scene(whole.with([&](SceneDesc& desc) { show_cells(desc, side); }));
-        RenderOptions options;
-        options.layers = "total";
-        const Film& film = renderer.render(options);
-        const LayerPlan plan = layer_plan(renderer.scene(), options.layers);
-        std::optional<MeanNumbers> numbers;
-        if (whole.desc().camera.sensor) numbers.emplace(whole.desc());
-        const Camera camera(renderer.scene().desc().camera);
-        const auto colours_of = [&](int x, int y) {
-            const std::span<const float> pixel = film.pixel(x, y);
-            Colours colours{};
-            if (numbers) {
-                const double factor = numbers->photoelectrons().irradiance_factor(
-                    camera.lens_ray(x + 0.5, y + 0.5), camera.focus_vergence());
-                // Three bands are red, green and blue themselves.
-                const std::size_t first =
-                    plan.has(Layer::total)
-                        ? static_cast<std::size_t>(plan.first_channel(Layer::total))
-                        : k_red;
-                Spectrum irradiance;
-                for (std::size_t b = 0; b < plan.band_count(); ++b)
-                    irradiance[b] = factor * double{pixel[first + b]};
-                for (std::size_t k = 0; k < colours_; ++k) colours[k] = numbers->at(irradiance, k);
-            } else if (colours_ == 1) {
-                colours[0] = (double{pixel[0]} + double{pixel[1]} + double{pixel[2]}) / 3;
-            } else {
-                for (std::size_t k = 0; k < colours_; ++k) colours[k] = double{pixel[k]};
-            }
-            return colours;
-        };
-        for (; next < cells_.size() && cells_[next].picture == picture; ++next)
-            for (int i = 0; i < side * side; ++i) {
-                const Colours colours =
-                    colours_of(side * cells_[next].x + i % side, side * cells_[next].y + i / side);
-                for (std::size_t k = 0; k < colours_; ++k)
-                    prediction[next][k] += colours[k] / (side * side);
-            }
-    }
+    const SceneDesc scene = unknowns_.scene(values);
+    for (std::size_t picture = 0; picture < files_.size(); ++picture)
+        predict(picture, scene, light, prediction);
     return prediction;
+}
+
+void PictureResiduals::predict(std::size_t picture, const SceneDesc& scene, Light light,
+                               Prediction& prediction) {
+    throw_if_stopped();
+    const int side = light == Light::of_the_scene ? pixels_per_side_ : 1;
+    const ImageScene whole = scene_of_picture(scene, files_[picture]);
+    Renderer& renderer = renderers_[picture];
+    renderer.set_scene(whole.with([&](SceneDesc& desc) {
+        show_cells(desc, side);
+        if (light != Light::scattered_once || !has_all_light_) return;
+        desc.render.integrator = RenderDesc::Integrator::volume;
+        desc.render.scattering = RenderDesc::Scattering::single;
+    }));
+    RenderOptions options;
+    options.layers = "total";
+    const Film& film = renderer.render(options);
+    const LayerPlan plan = layer_plan(renderer.scene(), options.layers);
+    // Three bands are red, green and blue themselves.
+    const std::size_t first =
+        plan.has(Layer::total) ? static_cast<std::size_t>(plan.first_channel(Layer::total)) : k_red;
+    const ComparedLight compared(whole.desc(), renderer.scene().desc().camera, colours_);
+    for (std::size_t i = first_cell_[picture]; i < first_cell_[picture + 1]; ++i) {
+        prediction[i] = {};
+        for (int n = 0; n < side * side; ++n) {
+            const int x = side * cells_[i].x + n % side, y = side * cells_[i].y + n / side;
+            Spectrum radiance;
+            for (std::size_t b = 0; b < plan.band_count(); ++b)
+                radiance[b] = double{film.pixel(x, y)[first + b]};
+            const Colours colours = compared.colours(x, y, radiance);
+            for (std::size_t k = 0; k < colours_; ++k)
+                prediction[i][k] += colours[k] / (side * side);
+        }
+    }
+}
+
+void PictureResiduals::differentiate(std::size_t picture, std::span<const SceneStep> steps) {
+    throw_if_stopped();
+    const SceneDesc scene = unknowns_.scene(shared_);
+    const ImageScene image = coarse_image(picture, scene);
+    std::vector<ChangedScene> changes;
+    for (const SceneStep& step : steps)
+        changes.push_back({unknowns_.all()[step.unknown].name, coarse_image(picture, step.back),
+                           coarse_image(picture, step.ahead), step.size});
+    renderers_[picture].set_scene(image);
+    const std::vector<float> images =
+        scene_derivatives(renderers_[picture], changes, {}, [](double) {});
+    const ComparedLight compared(scene_of_picture(scene, files_[picture]).desc(),
+                                 image.desc().camera, colours_);
+    const std::size_t bands = image.desc().water.bands_nm.size();
+    const auto width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
+    for (std::size_t n = 0; n < steps.size(); ++n)
+        for (std::size_t i = first_cell_[picture]; i < first_cell_[picture + 1]; ++i) {
+            const auto x = static_cast<std::size_t>(cells_[i].x);
+            const auto y = static_cast<std::size_t>(cells_[i].y);
+            const std::size_t first = ((n * height + y) * width + x) * bands;
+            Spectrum change;
+            for (std::size_t b = 0; b < bands; ++b) change[b] = double{images[first + b]};
+            by_unknown_[steps[n].unknown][i] = compared.change(cells_[i].x, cells_[i].y, change);
+        }
 }
 
 PictureResiduals::Seen PictureResiduals::seen(std::size_t cell, double light) const {
@@ -431,19 +499,69 @@ std::vector<double> PictureResiduals::exposures_at(std::span<const double> share
     return seen;
 }
 
-void PictureResiduals::group_unknowns(std::span<const double> shared) {
-    moved_.resize(shared.size());
-    std::vector<std::array<bool, 3>> taken;  // per group
+PictureResiduals::SceneStep PictureResiduals::change_by(std::size_t unknown) const {
+    std::vector<double> back = shared_, ahead = shared_;
+    back[unknown] = moved(unknown, -1);
+    ahead[unknown] = moved(unknown, 1);
+    return {unknown, unknowns_.scene(back), unknowns_.scene(ahead), ahead[unknown] - back[unknown]};
+}
+
+double PictureResiduals::moved(std::size_t unknown, double steps) const {
+    return std::clamp(shared_[unknown] + steps * steps_[unknown], unknowns_.all()[unknown].lower,
+                      unknowns_.all()[unknown].upper);
+}
+
+ImageScene PictureResiduals::coarse_image(std::size_t picture, const SceneDesc& scene) const {
+    return scene_of_picture(scene, files_[picture]).with([&](SceneDesc& desc) {
+        show_cells(desc, 1);
+        desc.render.samples = 1;  // at the centre, as all of the water's light
+    });
+}
+
+bool PictureResiduals::is_differentiable(const SceneStep& step) {
+    std::size_t picture = 0;  // with the most cells
+    const auto count = [&](std::size_t p) { return first_cell_[p + 1] - first_cell_[p]; };
+    for (std::size_t p = 1; p < files_.size(); ++p)
+        if (count(p) > count(picture)) picture = p;
+    try {
+        differentiate(picture, {&step, 1});
+    } catch (const UsageError&) {
+        return false;
+    }
+    Prediction ahead(cells_.size());
+    predict(picture, step.ahead, Light::of_the_scene, ahead);
+    const double size = moved(step.unknown, 1) - shared_[step.unknown];
+    double missing = 0, all = 0;
+    for (std::size_t i = first_cell_[picture]; i < first_cell_[picture + 1]; ++i)
+        for (std::size_t k = 0; k < colours_; ++k) {
+            const double change = ahead[i][k] - light_[i][k];
+            missing +=
+                std::pow((by_unknown_[step.unknown][i][k] * size - change) / cells_[i].error[k], 2);
+            all += std::pow(change / cells_[i].error[k], 2);
+        }
+    // The motion of the edges of shadows and beams is not in the renderer's derivatives; curvature
+    // within a step changes the difference by a few percent.
+    constexpr double k_missing = 0.1;
+    return all > 0 && missing <= k_missing * k_missing * all;
+}
+
+void PictureResiduals::choose_derivatives() {
+    by_unknown_.assign(shared_.size(), Prediction(cells_.size()));
+    differentiated_.clear();
+    together_.clear();
+    std::vector<std::size_t> others;
+    for (std::size_t i = 0; i < shared_.size(); ++i) {
+        if (unknowns_.all()[i].of != SceneUnknown::Of::scene) continue;
+        const bool is_smooth = !has_all_light_ && is_differentiable(change_by(i));
+        (is_smooth ? differentiated_ : others).push_back(i);
+    }
+    if (others.empty()) return;
     // Single scattering has no noise.
-    const Prediction before = predict(shared, Light::scattered_once);
-    for (std::size_t i = 0; i < shared.size(); ++i) {
-        std::vector<double> values(shared.begin(), shared.end());
-        const SceneUnknown& unknown = unknowns_.all()[i];
-        if (unknown.of != SceneUnknown::Of::scene) continue;
-        const double step = steps_[i];
-        values[i] = values[i] + step <= unknown.upper ? values[i] + step : values[i] - step;
+    const Prediction before = predict(shared_, Light::scattered_once);
+    for (const std::size_t i : others) {
+        std::vector<double> values = shared_;
+        values[i] = moved(i, moved(i, 1) > values[i] ? 1 : -1);
         const Prediction after = predict(values, Light::scattered_once);
-        std::array<bool, 3>& colours = moved_[i].colours;
         std::array<double, 3> changes{};
         for (std::size_t cell = 0; cell < cells_.size(); ++cell)
             for (std::size_t k = 0; k < colours_; ++k)
@@ -453,41 +571,47 @@ void PictureResiduals::group_unknowns(std::span<const double> shared) {
         // all, multiply scattered light may.
         constexpr double k_independent = 1e-2;
         const double most = *std::ranges::max_element(changes);
+        std::array<bool, 3> colours{};
         for (std::size_t k = 0; k < colours.size(); ++k)
             colours[k] = most == 0 || changes[k] > k_independent * k_independent * most;
-        const auto overlaps = [&](const std::array<bool, 3>& other) {
-            for (std::size_t k = 0; k < other.size(); ++k)
-                if (other[k] && colours[k]) return true;
-            return false;
+        const auto is_apart = [&](const Together& group) {
+            for (std::size_t k = 0; k < colours.size(); ++k)
+                if (group.of_colour[k] && colours[k]) return false;
+            return true;
         };
-        const auto place = std::ranges::find_if_not(taken, overlaps);
-        moved_[i].group = static_cast<std::size_t>(place - taken.begin());
-        if (place == taken.end()) {
-            taken.push_back(colours);
-            together_.push_back({{i}, {}, {}});
-            continue;
-        }
+        auto group = std::ranges::find_if(together_, is_apart);
+        if (group == together_.end()) group = together_.insert(group, Together{});
         for (std::size_t k = 0; k < colours.size(); ++k)
-            if (colours[k]) (*place)[k] = true;
-        together_[moved_[i].group].unknowns.push_back(i);
+            if (colours[k]) group->of_colour[k] = i;
     }
 }
 
-void PictureResiduals::take_derivatives(std::span<const double> shared) {
-    if (moved_.empty()) group_unknowns(shared);
+void PictureResiduals::take_derivatives() {
     derivatives_at_.clear();
-    for (Together& group : together_) {
-        std::vector<double> back(shared.begin(), shared.end()), ahead = back;
-        for (const std::size_t i : group.unknowns) {
-            const SceneUnknown& unknown = unknowns_.all()[i];
-            back[i] = std::max(shared[i] - steps_[i], unknown.lower);
-            ahead[i] = std::min(shared[i] + steps_[i], unknown.upper);
-            moved_[i].step = ahead[i] - back[i];
+    if (!has_chosen_) choose_derivatives();
+    has_chosen_ = true;
+    std::vector<SceneStep> steps;
+    for (const std::size_t i : differentiated_) steps.push_back(change_by(i));
+    for (std::size_t picture = 0; picture < files_.size() && !steps.empty(); ++picture)
+        differentiate(picture, steps);
+    for (const Together& group : together_) {
+        std::vector<double> back = shared_, ahead = shared_;
+        for (const std::optional<std::size_t> i : group.of_colour) {
+            if (!i) continue;
+            back[*i] = moved(*i, -1);
+            ahead[*i] = moved(*i, 1);
         }
-        group.back = predict(back, Light::of_the_scene);
-        group.ahead = predict(ahead, Light::of_the_scene);
+        const Prediction light_back = predict(back, Light::of_the_scene);
+        const Prediction light_ahead = predict(ahead, Light::of_the_scene);
+        for (std::size_t k = 0; k < colours_; ++k) {
+            if (!group.of_colour[k]) continue;
+            const std::size_t i = *group.of_colour[k];
+            for (std::size_t cell = 0; cell < cells_.size(); ++cell)
+                by_unknown_[i][cell][k] =
+                    (light_ahead[cell][k] - light_back[cell][k]) / (ahead[i] - back[i]);
+        }
     }
-    derivatives_at_.assign(shared.begin(), shared.end());
+    derivatives_at_ = shared_;
 }
 
 bool PictureResiduals::is_near(std::span<const double> shared, std::span<const double> other,
@@ -511,7 +635,7 @@ bool PictureResiduals::prepare(std::span<const double> shared, bool with_derivat
             light_of_ = shared_;
         }
         if (with_derivatives && !is_near(shared, derivatives_at_, has_all_light_ ? 0.1 : 1))
-            take_derivatives(shared);
+            take_derivatives();
         return true;
     } catch (const InputError&) {
         light_of_.clear();
@@ -535,10 +659,8 @@ bool PictureResiduals::evaluate(std::size_t group, const Block* /*block*/, doubl
                     derivative = predicted.by_power;
                 else if (unknowns_.all()[i].picture == cell.picture)
                     derivative = predicted.by_exposure;
-            } else if (moved_[i].colours[k]) {
-                const Together& moved = together_[moved_[i].group];
-                derivative = predicted.by_light * (moved.ahead[group][k] - moved.back[group][k]) /
-                             moved_[i].step;
+            } else {
+                derivative = predicted.by_light * by_unknown_[i][group][k];
             }
             by_shared[k * n + i] = derivative / error;
         }

@@ -102,17 +102,37 @@ class PictureResiduals final : public Observations {
     };
     using Prediction = std::vector<Colours>;  // of each cell
 
-    /// Which light: all that the scene has; the same with no more nodes than cells, for
-    /// differences, in which their errors cancel; or, which takes far less time, that scattered
-    /// once.
-    enum class Light : std::uint8_t { of_the_scene, coarsely, scattered_once };
+    /// Which light: all that the scene has, or, which takes far less time, that scattered once.
+    enum class Light : std::uint8_t { of_the_scene, scattered_once };
 
     void read(std::size_t picture, const SceneDesc& scene);
     /// Makes the camera's image one of the cells, each of side x side pixels.
     void show_cells(SceneDesc& scene, int side) const;
     Prediction predict(std::span<const double> values, Light light);
-    void group_unknowns(std::span<const double> shared);
-    void take_derivatives(std::span<const double> shared);
+    /// Of the cells of a picture.
+    void predict(std::size_t picture, const SceneDesc& scene, Light light, Prediction& prediction);
+    /// An unknown decreased and increased by its step, within its limits, from the values of
+    /// shared_.
+    struct SceneStep {
+        std::size_t unknown = 0;
+        SceneDesc back, ahead;
+        double size = 0;  // from one to the other
+    };
+    SceneStep change_by(std::size_t unknown) const;
+    /// The unknown's value in shared_, so many steps on but within its limits.
+    double moved(std::size_t unknown, double steps) const;
+    /// The image of a picture's cells, a pixel each.
+    ImageScene coarse_image(std::size_t picture, const SceneDesc& scene) const;
+    /// Fills by_unknown_ for the cells of a picture from the renderer's derivatives. Throws as
+    /// scene_derivatives.
+    void differentiate(std::size_t picture, std::span<const SceneStep> steps);
+    /// Whether the renderer differentiates by an unknown, and its derivatives explain what the step
+    /// changes, as seen in one of the pictures.
+    bool is_differentiable(const SceneStep& step);
+    /// Decides by which unknowns the renderer differentiates, and which of the others are moved
+    /// together.
+    void choose_derivatives();
+    void take_derivatives();
     /// Whether scenes are within this many steps of each other.
     bool is_near(std::span<const double> shared, std::span<const double> other, double steps) const;
     /// The value of a cell for the light that the scene predicts, and its derivatives.
@@ -130,8 +150,9 @@ class PictureResiduals final : public Observations {
     std::size_t colours_ = 3;
     std::optional<SensorDesc> sensor_;  // as the fit begins
     std::vector<Cell> cells_;
-    std::vector<double> brightest_;   // mean of a cell, per picture
-    std::deque<Renderer> renderers_;  // one per picture, which keeps what does not change
+    std::vector<std::size_t> first_cell_;  // of each picture, and behind the last
+    std::vector<double> brightest_;        // mean of a cell, per picture
+    std::deque<Renderer> renderers_;       // one per picture, which keeps what does not change
     bool has_all_light_ = false;
     int pixels_per_side_ = 1;  // rendered of a cell
     double model_error_ = 0;
@@ -142,23 +163,18 @@ class PictureResiduals final : public Observations {
     std::vector<double> shared_;           // the unknowns as they were prepared last
     Prediction light_;                     // of the scene
     std::vector<double> light_of_;         // for which unknowns; empty: none
-    /// The unknowns at which derivatives were taken; empty: not yet. They are differences over a
-    /// step to either side, and serve within it.
+    /// The unknowns at which derivatives were taken; empty: not yet. They serve within a step to
+    /// either side.
     std::vector<double> derivatives_at_;
-    /// Unknowns that are moved together, as no colour depends on two of them: those of bands.
+    bool has_chosen_ = false;                  // how derivatives are taken
+    std::vector<Prediction> by_unknown_;       // the derivatives of each cell's light
+    std::vector<std::size_t> differentiated_;  // the unknowns by which the renderer does it
+    /// Unknowns that are moved together for central differences, one for each colour, as no colour
+    /// depends on two of them: those of bands. An unknown may have several colours.
     struct Together {
-        std::vector<std::size_t> unknowns;
-        Prediction back, ahead;
+        std::array<std::optional<std::size_t>, 3> of_colour{};
     };
     std::vector<Together> together_;
-    /// Per unknown: the colours that depend on it, in which of together_ it is, and its step from
-    /// back to ahead.
-    struct Moved {
-        std::array<bool, 3> colours{true, true, true};
-        std::size_t group = 0;
-        double step = 0;
-    };
-    std::vector<Moved> moved_;
 };
 
 }  // namespace uw

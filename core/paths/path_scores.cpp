@@ -51,8 +51,9 @@ void ChangedScenes::compare(Side& side) const {
         return a.scattering == b.scattering;
     };
     const Medium& medium = *side.scene.medium;
-    side.has_same_medium =
-        side.attenuation == base().attenuation && side.phases == base().phases &&
+    side.has_same_attenuation = side.attenuation == base().attenuation;
+    side.has_same_scattering =
+        side.phases == base().phases &&
         has_same_scattering(medium.uniform, scene.medium->uniform) &&
         std::ranges::equal(medium.constituents, scene.medium->constituents, has_same_scattering,
                            &Constituent::per_unit, &Constituent::per_unit);
@@ -63,13 +64,15 @@ void ChangedScenes::compare(Side& side) const {
 }
 
 bool ChangedScenes::keeps_transmittance(std::size_t change) const {
-    const auto keeps = [](const Side& side) { return side.has_same_medium && side.has_same_field; };
+    const auto keeps = [](const Side& side) {
+        return side.has_same_attenuation && side.has_same_field;
+    };
     return keeps(less(change)) && keeps(more(change));
 }
 
-bool ChangedScenes::keeps_scattering(std::size_t change) const {
-    return keeps_transmittance(change) && less(change).has_same_surfaces &&
-           more(change).has_same_surfaces;
+bool ChangedScenes::keeps(const Side& side, PathVertex::Kind kind) {
+    if (kind == PathVertex::Kind::scattered) return side.has_same_scattering && side.has_same_field;
+    return kind != PathVertex::Kind::reflected || side.has_same_surfaces;
 }
 
 bool ChangedScenes::keeps_emitter(std::size_t change, std::size_t emitter) const {
@@ -237,7 +240,7 @@ void PathScores::add_scattering(const Vertex& vertex, const Vector3& out,
                                 std::span<double> scores) {
     if (vertex.kind != PathVertex::Kind::scattered && vertex.kind != PathVertex::Kind::reflected)
         return;
-    add_relative([&](std::size_t change) { return scenes_.keeps_scattering(change); },
+    add_relative([&](std::size_t change) { return scenes_.keeps(change, vertex.kind); },
                  [&](const Side& side, Spectrum& values) { eval(side, vertex, out, values); },
                  scores);
 }
@@ -271,36 +274,53 @@ void PathScores::eval(const Side& side, const Vertex& vertex, const Vector3& out
     }
 }
 
-double PathScores::eval_lamp(const Side& side, const Vertex& vertex, std::size_t emitter,
-                             Spectrum& values) {
+void PathScores::eval_lamp(const Side& side, std::size_t emitter, const LampTerm* base,
+                           LampTerm& term) {
     const Lamp& lamp = (*side.scene.emitters)[emitter];
-    const Vector3 to_lamp = lamp.origin(vertex.position) - vertex.position;
-    const double length = glm::length(to_lamp);
-    const double squared_offset = vertex.kind == PathVertex::Kind::scattered
-                                      ? lamp.squared_offset({vertex.position, vertex.in})
-                                      : 0;
-    const double radius = std::sqrt(length * length + squared_offset);
-    const double light =
-        lamp.relative_intensity(-to_lamp) * lamp.focus(vertex.position) / lamp.spread(radius);
-    eval(side, vertex, to_lamp / length, values);
-    for (std::size_t b = 0; b < scenes_.bands(); ++b) values[b] *= light * lamp.axis_intensity()[b];
-    return radius;
+    if (base != nullptr && side.has_same_emitter[emitter] != 0) {
+        term.to_lamp = base->to_lamp;
+        term.distance = base->distance;
+        term.light = base->light;
+    } else {
+        const Vector3 to_lamp = lamp.origin(last_.position) - last_.position;
+        const double length = glm::length(to_lamp);
+        const double squared_offset = last_.kind == PathVertex::Kind::scattered
+                                          ? lamp.squared_offset({last_.position, last_.in})
+                                          : 0;
+        term.to_lamp = to_lamp / length;
+        term.distance = std::sqrt(length * length + squared_offset);
+        term.light = lamp.relative_intensity(-to_lamp) * lamp.focus(last_.position) /
+                     lamp.spread(term.distance);
+    }
+    term.intensity = lamp.axis_intensity();
+    if (base != nullptr && ChangedScenes::keeps(side, last_.kind) && term.to_lamp == base->to_lamp)
+        term.scattered = base->scattered;
+    else
+        eval(side, last_, term.to_lamp, term.scattered);
 }
 
 void PathScores::add_lamp(const PathContribution& contribution, std::span<double> scores) {
     const std::size_t bands = scenes_.bands();
-    Spectrum value, less, more;
     bool has_value = false;
     for (std::size_t i = which_.first; i < scenes_.changes(); i += which_.step) {
-        if (scenes_.keeps_scattering(i) && scenes_.keeps_emitter(i, contribution.emitter)) continue;
+        const bool keeps_light =
+            scenes_.keeps(i, last_.kind) && scenes_.keeps_emitter(i, contribution.emitter);
+        if (keeps_light && scenes_.keeps_transmittance(i)) continue;
         if (!std::exchange(has_value, true))
-            eval_lamp(scenes_.base(), last_, contribution.emitter, value);
-        const double radius_less = eval_lamp(scenes_.less(i), last_, contribution.emitter, less);
-        const double radius_more = eval_lamp(scenes_.more(i), last_, contribution.emitter, more);
-        for (std::size_t b = 0; b < bands; ++b)
-            if (value[b] > 0)
-                scores[i * bands + b] += (more[b] - less[b]) / (scenes_.steps_[i] * value[b]);
-        add_depth(contribution, i, radius_less, radius_more, scores);
+            eval_lamp(scenes_.base(), contribution.emitter, nullptr, lamp_);
+        if (keeps_light) {
+            add_depth(contribution, i, lamp_.distance, lamp_.distance, scores);
+            continue;
+        }
+        eval_lamp(scenes_.less(i), contribution.emitter, &lamp_, lamp_less_);
+        eval_lamp(scenes_.more(i), contribution.emitter, &lamp_, lamp_more_);
+        for (std::size_t b = 0; b < bands; ++b) {
+            const double value = lamp_.value(b);
+            if (value > 0)
+                scores[i * bands + b] +=
+                    (lamp_more_.value(b) - lamp_less_.value(b)) / (scenes_.steps_[i] * value);
+        }
+        add_depth(contribution, i, lamp_less_.distance, lamp_more_.distance, scores);
     }
 }
 
@@ -360,7 +380,7 @@ Spectrum PathScores::emission(const Side& side, const Vertex& vertex) const {
 }
 
 void PathScores::add_emission(const Vertex& vertex, std::span<double> scores) {
-    add_relative([&](std::size_t change) { return scenes_.keeps_scattering(change); },
+    add_relative([&](std::size_t change) { return scenes_.keeps(change, vertex.kind); },
                  [&](const Side& side, Spectrum& values) { values = emission(side, vertex); },
                  scores);
 }

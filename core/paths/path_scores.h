@@ -40,18 +40,23 @@ class ChangedScenes {
         LitScene scene;
         AttenuationTable attenuation;
         PhaseTable phases;
-        // Whether these are those of the unchanged scene.
-        bool has_same_medium = true, has_same_field = true, has_same_surfaces = true;
+        // Whether these are those of the unchanged scene. Scattering: coefficients and phase
+        // functions.
+        bool has_same_attenuation = true, has_same_scattering = true, has_same_field = true,
+             has_same_surfaces = true;
         std::vector<char> has_same_emitter;          // by emitter
         const TexturedSurfaces* textures = nullptr;  // of the surfaces, if there are any
     };
 
     /// Finds out which parts `side` has in common with the unchanged scene.
     void compare(Side& side) const;
-    // Whether both sides of a change equal the unchanged scene in transmittance; in scattering and
-    // reflection as well; in an emitter.
+    // Whether both sides of a change equal the unchanged scene in transmittance; in what happens to
+    // light at a vertex of this kind; in an emitter.
     bool keeps_transmittance(std::size_t change) const;
-    bool keeps_scattering(std::size_t change) const;
+    static bool keeps(const Side& side, PathVertex::Kind kind);
+    bool keeps(std::size_t change, PathVertex::Kind kind) const {
+        return keeps(less(change), kind) && keeps(more(change), kind);
+    }
     bool keeps_emitter(std::size_t change, std::size_t emitter) const;
 
     const Side& base() const { return sides_.front(); }
@@ -116,9 +121,18 @@ class PathScores {
     void add_emission(const Vertex& vertex, std::span<double> scores);
     void add_visible_lamp(std::size_t lamp, std::span<double> scores);
     void eval(const Side& side, const Vertex& vertex, const Vector3& out, Spectrum& values);
-    // Evaluates intensity over squared distance times the scattering or reflection at the vertex;
-    // returns the distance that the light travelled.
-    double eval_lamp(const Side& side, const Vertex& vertex, std::size_t emitter, Spectrum& values);
+    // The light of an emitter at the last vertex.
+    struct LampTerm {
+        Vector3 to_lamp{};    // unit
+        double distance = 0;  // that the light travelled [m]
+        double light = 0;    // per intensity on the lamp's axis: relative intensity over distance^2
+        Spectrum intensity;  // on the axis, by band
+        Spectrum scattered;  // or reflected towards the camera, per light
+        double value(std::size_t band) const { return light * intensity[band] * scattered[band]; }
+    };
+    // `base`: that of the unchanged scene, of which the term has what `side` does not change; null
+    // for the unchanged scene itself.
+    void eval_lamp(const Side& side, std::size_t emitter, const LampTerm* base, LampTerm& term);
     // Adds the score of the transmittance of an emitter's light over these distances; if the
     // contribution has columns, that of the whole path.
     void add_depth(const PathContribution& contribution, std::size_t change, double radius_less,
@@ -136,6 +150,7 @@ class PathScores {
     std::size_t count_ = 0;  // of those in use
     EveryFew which_;         // the changes whose scores are computed
     Vertex last_;
+    LampTerm lamp_, lamp_less_, lamp_more_;
     std::vector<double> column_, base_column_, less_, more_, p_;
 };
 
