@@ -590,8 +590,8 @@ MultipleLightOptions options_of(RenderDesc::Quality quality) {
     MultipleLightOptions options;
     options.nodes = 5000;
     options.cells = 1'000'000;
-    options.paths = 1'000'000;
-    options.error = 0.009;
+    options.paths = 600'000;
+    options.error = 0.013;
     if (quality == RenderDesc::Quality::draft) {
         options.nodes = 1000;
         options.cells = 100'000;

@@ -48,12 +48,17 @@ class LatticeFit {
     /// it.
     static constexpr int k_max_radius = 8;
 
-    /// The weights of the nodes in the fitted value at (0, 0); they add up to 1. `nodes`, the
-    /// nearest first, need not include that place. `tolerance`: a difference that does not matter,
-    /// in units of `value`; where the noise is well below it, the neighbourhood stays narrow. Empty
-    /// without nodes.
-    std::span<const FitWeight> fit(std::span<const FitNode> nodes, double tolerance);
+    /// Fits the value at (0, 0). `nodes`, the nearest first, need not include that place.
+    /// `tolerance`: a difference that does not matter, in units of `value`; where the noise is well
+    /// below it, the neighbourhood stays narrow.
+    void fit(std::span<const FitNode> nodes, double tolerance);
+    /// Fits it in the neighbourhood of `radius`, one that fit() chose, whatever the nodes show.
+    void fit_within(std::span<const FitNode> nodes, int radius);
 
+    /// The weights of the nodes in the fitted value; they add up to 1. Empty without nodes.
+    std::span<const FitWeight> weights() const { return weights_; }
+    /// The radius of the last fit; -1 without nodes.
+    int radius() const { return radius_; }
     /// The variance of the last fitted value.
     double variance() const { return variance_; }
     /// The weights of the fit that was accepted before the last, in a narrower neighbourhood. The
@@ -62,11 +67,16 @@ class LatticeFit {
     std::span<const FitWeight> narrower() const { return narrower_; }
 
   private:
+    // Fits the polynomial of the highest degree that the nodes within the radius determine.
+    bool try_within(std::span<const FitNode> nodes, int radius);
     template <std::size_t k_terms>
-    bool fit_within(std::span<const FitNode> nodes, int radius);
+    bool try_polynomial(std::span<const FitNode> nodes, int radius);
+    void accept_tried(int radius);
+    void clear();
 
     std::vector<FitWeight> weights_, narrower_, tried_;
     CholeskyFactor cholesky_;
+    int radius_ = -1;
     double variance_ = 0;
     double tried_variance_ = 0, tried_value_ = 0;
 };

@@ -295,10 +295,14 @@ constexpr double k_smoothed_variance = 0.03, k_more_on_surfaces = 2.5;
 // The work of each node and each path in units of the effort.
 constexpr double k_work_of_effort = 6;
 constexpr double k_min_cost = 0.05;
+// The errors of nodes darker than this, relative to the mean light, count as if they were as
+// bright.
+constexpr double k_min_light = 0.1;
 
 }  // namespace
 
-// Numbers of paths in proportion to standard deviation / sqrt(cost) minimise the error.
+// Numbers of paths in proportion to standard deviation / sqrt(cost) minimise the error. Errors are
+// relative to the light of each node, so that dark water counts as much as what a lamp lights up.
 NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effort) {
     constexpr int k_paths = 64, k_min_across = 5, k_max_across = 16;
     constexpr double k_pilot_fraction = 0.05;  // of the paths
@@ -318,16 +322,20 @@ NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effor
     }
     const double typical = typical_diffuse(pilot.raw());
     double light = 0;
-    double of_surface = 0, of_lit = 0, of_water = 0;  // variances of a single path
+    for (const RadianceNode& node : pilot.raw()) light += node.mean_light / count;
+    // Variances of a single path relative to the light of its node.
+    double of_surface = 0, of_lit = 0, of_water = 0;
     struct {
         double surface, lit, water;
     } cost{0, 0, 0};  // of the paths of each kind
     for (const RadianceNode& node : pilot.raw()) {
+        const double node_light = std::max(node.mean_light, k_min_light * light);
+        if (!(node_light > 0)) continue;
         const double water_scale = paths.water_scale(node),
                      surface_scale = paths.surface_scale(node);
-        light += node.mean_light;
-        of_lit += node.lit.variance / water_scale;
-        of_water += node.water.variance / water_scale;
+        const double weight = 1 / (node_light * node_light);
+        of_lit += weight * node.lit.variance / water_scale;
+        of_water += weight * node.water.variance / water_scale;
         cost.lit += water_scale * node.lit.work;
         cost.water += water_scale * node.water.work;
         cost.surface += surface_scale * node.surface_work;
@@ -337,7 +345,7 @@ NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effor
             0.5 * (node.halves[0].diffuse_variance + node.halves[1].diffuse_variance);
         const double variance = of_halves * k_paths / 2 / surface_scale;
         const double throughput = throughput_of_diffuse(node, typical);
-        of_surface += k_more_on_surfaces * variance * throughput * throughput;
+        of_surface += weight * k_more_on_surfaces * variance * throughput * throughput;
     }
     for (double* of_kind : {&cost.surface, &cost.lit, &cost.water})
         *of_kind = std::max(*of_kind / count, k_min_cost);
@@ -346,8 +354,8 @@ NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effor
     const double work = surface * cost.surface + lit * cost.lit + water * cost.water;
     double scale = work > 0 ? k_work_of_effort * effort.paths / effort.nodes / work : 0;
     if (work > 0 && effort.error > 0) {
-        const double error = effort.error * light / count;
-        scale = std::min(scale, k_smoothed_variance * work / count / (error * error));
+        const double variance = effort.error * effort.error;
+        scale = std::min(scale, k_smoothed_variance * work / count / variance);
     }
     const auto number = [&](double of_kind) {
         return static_cast<int>(std::clamp(scale * of_kind, k_min_node_paths, k_max_node_paths));

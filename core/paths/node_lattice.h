@@ -60,7 +60,7 @@ class NodeLattice {
 struct NodeEffort {
     double paths = 0;  // maximum of each kind, over all nodes
     int nodes = 0;
-    double error = 0;  // target standard error, relative to all light; 0: none
+    double error = 0;  // target standard error, relative to the light of each node; 0: none
 };
 
 /// The numbers of paths of each kind that minimise the error for the effort, planned by a pilot of

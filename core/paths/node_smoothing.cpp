@@ -183,51 +183,104 @@ struct IntervalOfNodes {
     }
 };
 
+/// The radii of the neighbourhoods chosen at the nodes of a lattice; -1: none.
+using Radii = Grid2D<signed char>;
+
+/// The narrowest neighbourhood of a node that others bear out: its own, or the k_support-th
+/// narrowest of the eight nodes around that `belong(index)`. A feature is seen by neighbours, too;
+/// what stops the smoothing at single nodes is noise, which would stand as a spot.
+template <class Belong>
+int supported_radius(const Radii& radii, int i, int j, const Belong& belong) {
+    constexpr std::size_t k_support = 4;  // fewer leave spots, more blur lamps
+    std::array<int, 8> around{};
+    std::size_t count = 0;
+    for (int v = std::max(0, j - 1); v <= std::min(radii.height() - 1, j + 1); ++v)
+        for (int u = std::max(0, i - 1); u <= std::min(radii.width() - 1, i + 1); ++u)
+            if ((u != i || v != j) && radii(u, v) >= 0 && belong(radii.index(u, v)))
+                around[count++] = radii(u, v);
+    const int own = radii(i, j);
+    if (count < k_support) return own;
+    std::ranges::nth_element(around.begin(), around.begin() + k_support - 1,
+                             around.begin() + static_cast<std::ptrdiff_t>(count));
+    return std::max(own, around[k_support - 1]);
+}
+
 class NodeSmoothing {
   public:
     NodeSmoothing(const Grid2D<RadianceNode>& raw, std::size_t groups, std::size_t bands)
         : raw_(raw), bands_(bands), values_(groups * bands) {}
 
+    /// The radii that the nodes' values ask for: the wider of those of both halves, since a feature
+    /// that only one half sees is noise. -1: no node around has light there.
+    int water_radius(const IntervalOfNodes& of_nodes, std::size_t interval, int i, int j) const;
+    int surface_radius(int i, int j) const;
     /// Smooths an interval of a node; returns false if no node around it reaches that far.
     bool smooth_water(const IntervalOfNodes& of_nodes, std::size_t interval, int i, int j,
-                      SmoothNode& node) const;
-    void smooth_surface(int i, int j, SmoothNode& node) const;
+                      const Radii& radii, SmoothNode& node) const;
+    void smooth_surface(int i, int j, const Radii& radii, SmoothNode& node) const;
 
   private:
+    // Finds the nodes that take part, with the values of one half; returns whether any node reaches
+    // as far.
+    bool find_water(const IntervalOfNodes& of_nodes, int i, int j, std::size_t half,
+                    Neighbourhood& near) const;
+    void find_surface(int i, int j, std::size_t half, Neighbourhood& near) const;
+
     const Grid2D<RadianceNode>& raw_;
     std::size_t bands_, values_;
 };
 
-bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t interval, int i,
-                                 int j, SmoothNode& node) const {
+bool NodeSmoothing::find_water(const IntervalOfNodes& of_nodes, int i, int j, std::size_t half,
+                               Neighbourhood& near) const {
+    bool is_reached = false;
+    const auto find = [&](NodeReach min_reach) {
+        near.find(raw_, i, j, [&](std::size_t other) -> std::optional<FitNode> {
+            if (of_nodes.reach[other] < min_reach) return std::nullopt;
+            is_reached = true;
+            if (!(of_nodes.weights[other] > 0)) return std::nullopt;
+            FitNode of;
+            of.weight = static_cast<double>(of_nodes.weights[other]);
+            of.value = static_cast<double>(of_nodes.of_half[half][other]);
+            of.variance = static_cast<double>(of_nodes.variances[half][other]);
+            return of;
+        });
+    };
+    find(NodeReach::enough);
+    if (near.nodes().empty()) find(NodeReach::little);
+    return is_reached;
+}
+
+int NodeSmoothing::water_radius(const IntervalOfNodes& of_nodes, std::size_t interval, int i,
+                                int j) const {
     LatticeFit fit;
     Neighbourhood near;
     const RadianceNode& own = raw_(i, j);
-    for (std::size_t half = 0; half < 2; ++half) {
-        bool is_reached = false;
-        const auto find = [&](NodeReach min_reach) {
-            near.find(raw_, i, j, [&](std::size_t other) -> std::optional<FitNode> {
-                if (of_nodes.reach[other] < min_reach) return std::nullopt;
-                is_reached = true;
-                if (!(of_nodes.weights[other] > 0)) return std::nullopt;
-                FitNode of;
-                of.weight = static_cast<double>(of_nodes.weights[other]);
-                of.value = static_cast<double>(of_nodes.of_half[1 - half][other]);
-                of.variance = static_cast<double>(of_nodes.variances[1 - half][other]);
-                return of;
-            });
-        };
-        find(NodeReach::enough);
-        if (near.nodes().empty()) find(NodeReach::little);
-        // Water that scatters nothing is known to be dark.
-        if (near.nodes().empty()) return is_reached;
+    int radius = -1;
+    for (const std::size_t half : {0U, 1U}) {
+        find_water(of_nodes, i, j, half, near);
         // Weighted as on the node's ray, which shows nothing behind its surface.
         const double visible_weight =
             own.has_ray ? static_cast<double>(own.mean_weights[interval]) : 0.0;
         const double tolerance =
             k_tolerance * near.light() / std::max(visible_weight, 1e-3 * near.weight());
-        const std::span<const FitWeight> weights = fit.fit(near.nodes(), tolerance);
-        for (const FitWeight& weight : weights) {
+        fit.fit(near.nodes(), tolerance);
+        radius = std::max(radius, fit.radius());
+    }
+    return radius;
+}
+
+bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t interval, int i,
+                                 int j, const Radii& radii, SmoothNode& node) const {
+    LatticeFit fit;
+    Neighbourhood near;
+    const RadianceNode& own = raw_(i, j);
+    // The same for both halves: weights depend on where nodes are, not on their values.
+    const bool is_reached = find_water(of_nodes, i, j, 0, near);
+    // Water that scatters nothing is known to be dark.
+    if (near.nodes().empty()) return is_reached;
+    fit.fit_within(near.nodes(), supported_radius(radii, i, j, [](std::size_t) { return true; }));
+    for (const std::size_t half : {0U, 1U}) {
+        for (const FitWeight& weight : fit.weights()) {
             const RadianceNode& other = raw_[weight.index];
             const float* water = &other.halves[half].water[interval * values_];
             for (std::size_t k = 0; k < values_; ++k) {
@@ -259,17 +312,45 @@ bool NodeSmoothing::smooth_water(const IntervalOfNodes& of_nodes, std::size_t in
                 }
             }
         };
-        add_shift(weights, 1);
+        add_shift(fit.weights(), 1);
         add_shift(fit.narrower(), -1);
     }
     return true;
 }
 
-void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
+void NodeSmoothing::find_surface(int i, int j, std::size_t half, Neighbourhood& near) const {
+    near.find(raw_, i, j, [&](std::size_t index) -> std::optional<FitNode> {
+        const RadianceNode& other = raw_[index];
+        if (!see_same_surface(raw_(i, j), other)) return std::nullopt;
+        FitNode of;
+        of.value = other.halves[half].diffuse_mean;
+        of.variance = other.halves[half].diffuse_variance;
+        return of;
+    });
+}
+
+int NodeSmoothing::surface_radius(int i, int j) const {
+    LatticeFit fit;
+    Neighbourhood near;
+    int radius = -1;
+    for (const std::size_t half : {0U, 1U}) {
+        find_surface(i, j, half, near);
+        fit.fit(near.nodes(),
+                k_tolerance * near.light() / std::max(raw_(i, j).surface_throughput, 1e-3));
+        radius = std::max(radius, fit.radius());
+    }
+    return radius;
+}
+
+void NodeSmoothing::smooth_surface(int i, int j, const Radii& radii, SmoothNode& node) const {
     LatticeFit fit;
     Neighbourhood near;
     std::vector<float> squares;
     const RadianceNode& own = raw_(i, j);
+    find_surface(i, j, 0, near);
+    fit.fit_within(near.nodes(), supported_radius(radii, i, j, [&](std::size_t other) {
+                       return see_same_surface(own, raw_[other]);
+                   }));
     node.surface = own.surface;
     const auto begin = [&](bool is_there, std::vector<float>& light, std::vector<float>& variance) {
         light.assign(is_there ? values_ : 0, 0.0F);
@@ -277,19 +358,8 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
     };
     begin(true, node.light.diffuse, node.diffuse_variance);
     begin(own.surface->is_glossy, node.light.glossy, node.glossy_variance);
-    for (std::size_t half = 0; half < 2; ++half) {
-        near.find(raw_, i, j, [&](std::size_t index) -> std::optional<FitNode> {
-            const RadianceNode& other = raw_[index];
-            if (!see_same_surface(own, other)) return std::nullopt;
-            FitNode of;
-            of.value = other.halves[1 - half].diffuse_mean;
-            of.variance = other.halves[1 - half].diffuse_variance;
-            return of;
-        });
-        const double tolerance =
-            k_tolerance * near.light() / std::max(own.surface_throughput, 1e-3);
-        const std::span<const FitWeight> weights = fit.fit(near.nodes(), tolerance);
-        for (const FitWeight& weight : weights) {
+    for (const std::size_t half : {0U, 1U}) {
+        for (const FitWeight& weight : fit.weights()) {
             const RadianceNode& other = raw_[weight.index];
             const auto add = [&](const std::vector<float> NodeRadiance::*values,
                                  std::vector<float>& light, std::vector<float>& variance) {
@@ -315,7 +385,7 @@ void NodeSmoothing::smooth_surface(int i, int j, SmoothNode& node) const {
                         sign * static_cast<float>(weight.weight) *
                         raw_[weight.index].halves[half].diffuse[k];
         };
-        add_shift(weights, 1);
+        add_shift(fit.weights(), 1);
         add_shift(fit.narrower(), -1);
     }
 }
@@ -342,11 +412,18 @@ Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<RadianceNode>& raw, std::size_
     Grid2D<RadianceNode> averaged = raw;
     average_surface_variances(raw, averaged);
     const NodeSmoothing smoothing(averaged, groups, bands);
-    parallel_for(raw.size(), [&](std::size_t at) {
-        if (!raw[at].surface) return;
-        smoothing.smooth_surface(static_cast<int>(at) % raw.width(),
-                                 static_cast<int>(at) / raw.width(), nodes[at]);
+    const auto for_each = [&](const auto& visit) {
+        parallel_for(raw.size(), [&](std::size_t at) {
+            if (raw[at].surface)
+                visit(static_cast<int>(at) % raw.width(), static_cast<int>(at) / raw.width());
+        });
+    };
+    Radii radii;
+    radii.assign(raw.width(), raw.height(), -1);
+    for_each([&](int i, int j) {
+        radii(i, j) = static_cast<signed char>(smoothing.surface_radius(i, j));
     });
+    for_each([&](int i, int j) { smoothing.smooth_surface(i, j, radii, nodes(i, j)); });
     return nodes;
 }
 
@@ -356,14 +433,19 @@ void smooth_water(const Grid2D<RadianceNode>& raw, const NodeWindow& window,
     Grid2D<RadianceNode> averaged = raw;
     average_water_variances(raw, averaged);
     const NodeSmoothing smoothing(averaged, groups, bands);
-    const int columns = window.i1 - window.i0;
-    const auto for_each = [&](const auto& visit) {
-        parallel_for(window.size(), [&](std::size_t at) {
-            visit(window.i0 + static_cast<int>(at) % columns,
-                  window.j0 + static_cast<int>(at) / columns);
+    const auto for_each = [&](const NodeWindow& within, const auto& visit) {
+        const int columns = within.i1 - within.i0;
+        parallel_for(within.size(), [&](std::size_t at) {
+            visit(within.i0 + static_cast<int>(at) % columns,
+                  within.j0 + static_cast<int>(at) / columns);
         });
     };
-    for_each([&](int i, int j) {
+    const NodeWindow around{std::max(0, window.i0 - 1), std::max(0, window.j0 - 1),
+                            std::min(raw.width(), window.i1 + 1),
+                            std::min(raw.height(), window.j1 + 1)};
+    Radii radii;
+    radii.assign(raw.width(), raw.height(), -1);
+    for_each(window, [&](int i, int j) {
         nodes(i, j).light.water.assign(intervals.count() * groups * bands, 0.0F);
         nodes(i, j).water_variance.assign(bands, 0.0F);
         for (std::vector<float>& shift : nodes(i, j).water_shift) shift.assign(bands, 0.0F);
@@ -372,9 +454,14 @@ void smooth_water(const Grid2D<RadianceNode>& raw, const NodeWindow& window,
         const IntervalOfNodes of_nodes(averaged, intervals, interval, groups, bands);
         // What lies behind an interval that no node reaches is unknown.
         const double before = interval == 0 ? 0 : intervals.end(interval - 1);
-        for_each([&](int i, int j) {
+        for_each(around, [&](int i, int j) {
+            radii(i, j) =
+                static_cast<signed char>(smoothing.water_radius(of_nodes, interval, i, j));
+        });
+        for_each(window, [&](int i, int j) {
             SmoothNode& node = nodes(i, j);
-            if (node.known_to == before && smoothing.smooth_water(of_nodes, interval, i, j, node))
+            if (node.known_to == before &&
+                smoothing.smooth_water(of_nodes, interval, i, j, radii, node))
                 node.known_to = intervals.end(interval);
         });
     }

@@ -17,7 +17,7 @@ namespace uw {
 inline constexpr int k_variance_radius = 2;
 /// The distance, in steps of the lattice, of the farthest nodes on which a smoothed node and its
 /// error depend.
-inline constexpr int k_smoothing_radius = LatticeFit::k_max_radius + 2 * k_variance_radius;
+inline constexpr int k_smoothing_radius = LatticeFit::k_max_radius + 2 * k_variance_radius + 1;
 
 /// A node whose light is smoothed over those around it.
 struct SmoothNode {
@@ -59,7 +59,8 @@ struct NodeWindow {
 /// nodes whose rays reach it. The neighbourhood for either half of the estimates is chosen by the
 /// values and variances of the other half. If a half chose its own, a rare bright path would stop
 /// the smoothing around itself and be counted twice; or its spread would widen the neighbourhood to
-/// nodes of lower weight. `groups`: see RadianceEstimator.
+/// nodes of lower weight. Both halves take the same neighbourhood, which the nodes next to it bear
+/// out. `groups`: see RadianceEstimator.
 Grid2D<SmoothNode> smoothed_surfaces(const Grid2D<RadianceNode>& raw, std::size_t groups,
                                      std::size_t bands);
 void smooth_water(const Grid2D<RadianceNode>& raw, const NodeWindow& window,

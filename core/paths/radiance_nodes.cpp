@@ -44,11 +44,9 @@ void store(std::span<const double> sums, double scale, std::vector<float>& value
 
 namespace {
 
-// Every node gets some paths, or nothing would show where the expectation is wrong.
 double scale_for(double expected, double typical) {
-    constexpr double k_even = 0.3, k_max_of_typical = 8;
-    if (!(typical > 0)) return 1;
-    return std::min(k_even + (1 - k_even) * expected / typical, k_max_of_typical);
+    constexpr double k_max_of_typical = 16;
+    return typical > 0 ? std::clamp(expected / typical, 1.0, k_max_of_typical) : 1;
 }
 
 }  // namespace

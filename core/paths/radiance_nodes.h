@@ -72,8 +72,8 @@ struct RadianceNode {
     double surface_work = 0;  // of a path from the surface
 };
 
-/// The number of light paths of each kind at a node whose expected light is typical. Brighter nodes
-/// get more, as noise is in proportion to the light.
+/// The number of light paths of each kind at a node whose expected light is typical, or less.
+/// Brighter nodes, which are few and lie around lamps, get more.
 struct NodePaths {
     int surface = 512;  // from the node's surface: indirect light on it
     int lit = 512;      // to surfaces that are visible through scattering

@@ -29,7 +29,8 @@ std::vector<FitNode> nodes_of(
 
 double fitted(LatticeFit& fit, const std::vector<FitNode>& nodes, double tolerance = 0) {
     double sum = 0, weights = 0;
-    for (const FitWeight& weight : fit.fit(nodes, tolerance)) {
+    fit.fit(nodes, tolerance);
+    for (const FitWeight& weight : fit.weights()) {
         sum += weight.weight * nodes[weight.index].value;
         weights += weight.weight;
     }
@@ -56,11 +57,31 @@ TEST(LatticeFit, KeepsAStepThatIsGreaterThanTheNoise) {
     EXPECT_EQ(fitted(fit, nodes_of(step, 1e-4)), 0);
     // Noise far below the tolerance is not smoothed.
     EXPECT_EQ(fitted(fit, nodes_of(step, 1e-4), 100), 0);
-    // Differences within the tolerance do not matter: this step is 16 times the noise, a third of
+    // Differences within the tolerance do not matter: this step is 9 times the noise, a third of
     // which remains in the next wider fit.
-    const auto low = [](int x, int) { return x < 0 ? 0.16 : 0.0; };
+    const auto low = [](int x, int) { return x < 0 ? 0.09 : 0.0; };
     EXPECT_EQ(fitted(fit, nodes_of(low, 1e-4)), 0);
     EXPECT_GT(fitted(fit, nodes_of(low, 1e-4), 0.0195), 0.01);
+}
+
+TEST(LatticeFit, FitsWithinAGivenRadiusWhateverTheNodesShow) {
+    LatticeFit fit;
+    const auto step = [](int x, int) { return x < 0 ? 10.0 : 0.0; };
+    const std::vector<FitNode> nodes = nodes_of(step, 1e-4);
+    fit.fit(nodes, 0);
+    EXPECT_LT(fit.radius(), LatticeFit::k_max_radius);
+    fit.fit_within(nodes, LatticeFit::k_max_radius);
+    EXPECT_EQ(fit.radius(), LatticeFit::k_max_radius);
+    // The same as if noise had hidden the step.
+    LatticeFit noisy;
+    noisy.fit(nodes_of(step, 1e4), 0);
+    ASSERT_EQ(fit.weights().size(), noisy.weights().size());
+    for (std::size_t i = 0; i < fit.weights().size(); ++i)
+        EXPECT_EQ(fit.weights()[i].weight, noisy.weights()[i].weight);
+    EXPECT_EQ(fit.narrower().size(), noisy.narrower().size());
+    fit.fit_within(nodes, 0);
+    EXPECT_EQ(fit.radius(), 0);
+    EXPECT_TRUE(fit.narrower().empty());
 }
 
 TEST(LatticeFit, WeightsTheNodes) {
@@ -85,7 +106,8 @@ TEST(LatticeFit, StatesTheVarianceOfWhatItFits) {
     for (int trial = 0; trial < k_trials; ++trial) {
         const auto decides = nodes_of([&](int, int) { return noise(random); }, 1);
         double value = 0;
-        for (const FitWeight& weight : fit.fit(decides, 0)) value += weight.weight * noise(random);
+        fit.fit(decides, 0);
+        for (const FitWeight& weight : fit.weights()) value += weight.weight * noise(random);
         sum += value;
         squares += value * value;
         stated += fit.variance();
@@ -102,7 +124,9 @@ TEST(LatticeFit, StatesTheVarianceOfWhatItFits) {
 
 TEST(LatticeFit, UsesAsManyNodesAsThereAre) {
     LatticeFit fit;
-    EXPECT_TRUE(fit.fit({}, 0).empty());
+    fit.fit({}, 0);
+    EXPECT_TRUE(fit.weights().empty());
+    EXPECT_EQ(fit.radius(), -1);
     const std::vector<FitNode> one{{5, -3, 7, 1, 0}};
     EXPECT_DOUBLE_EQ(fitted(fit, one), 7);
     EXPECT_DOUBLE_EQ(fit.variance(), 1);
