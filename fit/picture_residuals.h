@@ -109,7 +109,7 @@ class PictureResiduals final : public Observations {
     /// Makes the camera's image one of the cells, each of side x side pixels.
     void show_cells(SceneDesc& scene, int side) const;
     Prediction predict(std::span<const double> values, Light light);
-    /// Of the cells of a picture.
+    /// Predicts the cells of one picture.
     void predict(std::size_t picture, const SceneDesc& scene, Light light, Prediction& prediction);
     /// An unknown decreased and increased by its step, within its limits, from the values of
     /// shared_.

@@ -142,7 +142,7 @@ std::uint64_t available_memory_bytes(const fs::path& root) {
 
 namespace {
 
-// Of the thread, as what asks for memory may lie below the callback of a library.
+// It belongs to the thread, as what asks for memory may lie below the callback of a library.
 thread_local const MemoryWait* wait_of_thread = nullptr;
 
 void sleep_unless_stopped(double seconds) {

@@ -6,7 +6,8 @@ namespace uw {
 
 namespace {
 
-// Of the thread, since TBB and the callbacks of other libraries pass no argument on to what asks.
+// It belongs to the thread, since TBB and the callbacks of other libraries pass no argument on to
+// what asks.
 thread_local const std::atomic<bool>* stop_of_thread = nullptr;
 
 }  // namespace

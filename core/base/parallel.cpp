@@ -76,7 +76,8 @@ ThreadLimit::~ThreadLimit() {
 }
 
 void work_in_background() {
-    // Of the thread, since TBB shows an observer who joins in the loops of the thread that made it.
+    // Each thread has its own, since TBB shows an observer who joins in the loops of the thread
+    // that made it.
     thread_local const PoolObserver observer;
     yield_to_others();
 }

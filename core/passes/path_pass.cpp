@@ -86,7 +86,7 @@ struct PathPixels::Batch {
 /// Memory in which one pixel is rendered.
 struct PathPixels::Scratch {
     PixelView view;
-    // Of the rays that are traced at once:
+    // These are of the rays that are traced at once:
     std::vector<Ray> rays;
     std::vector<int> indices;  // of the rays' paths
     std::vector<SurfaceHit> hits;
@@ -94,7 +94,7 @@ struct PathPixels::Scratch {
     std::vector<SurfaceSample> samples;
     std::vector<const SurfaceSample*> surfaces;
     SurfaceLight light;
-    // Of one of them:
+    // These are of one of them:
     std::vector<SeenLamp> lamps;
     CameraSegment segment;
 };

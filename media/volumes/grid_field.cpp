@@ -206,8 +206,9 @@ struct Scratch {
     ProfileRefinement refinement;
 };
 
-// Of the thread, since whoever asks a field for a profile need not know that it has grids:
-// allocating this for each ray takes a tenth of the instructions of assets/scenes/plume.yaml.
+// It belongs to the thread, since whoever asks a field for a profile need not know that it has
+// grids: allocating this for each ray takes a tenth of the instructions of
+// assets/scenes/plume.yaml.
 Scratch& scratch_of_thread() {
     thread_local Scratch scratch;
     return scratch;
