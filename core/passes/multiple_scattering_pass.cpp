@@ -591,7 +591,7 @@ MultipleLightOptions options_of(RenderDesc::Quality quality) {
     options.nodes = 5000;
     options.cells = 1'000'000;
     options.paths = 600'000;
-    options.error = 0.013;
+    options.error = 0.012;
     if (quality == RenderDesc::Quality::draft) {
         options.nodes = 1000;
         options.cells = 100'000;

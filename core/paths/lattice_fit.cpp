@@ -40,13 +40,7 @@ void CholeskyFactor::solve(std::span<double> x) const {
 namespace {
 
 constexpr int k_max_terms = 6;  // 1, x, y, x^2, xy, y^2
-constexpr std::array<int, 5> k_fit_radii{0, 1, 2, 4, LatticeFit::k_max_radius};
-// A wider fit is rejected if it differs from a narrower one by more than so many standard
-// deviations of that. Low, so that halos of lamps and edges of plumes are kept, and often wrong:
-// callers let several fits decide together.
-constexpr double k_agreement = 1.5;
-// A fit is not widened further if its standard deviation is below this, relative to the tolerance.
-constexpr double k_quiet = 0.5;
+constexpr int k_min_radius_of_quadric = 2;
 // The minimum pivot of the normal equations, relative to the diagonal.
 constexpr double k_min_pivot = 1e-6;
 
@@ -68,7 +62,7 @@ void visit_near(std::span<const FitNode> nodes, int radius, const Visit& visit) 
 }  // namespace
 
 template <std::size_t k_terms>
-bool LatticeFit::try_polynomial(std::span<const FitNode> nodes, int radius) {
+bool LatticeFit::fit_polynomial(std::span<const FitNode> nodes, int radius) {
     // Local and of a fixed size, so that the compiler keeps it in registers.
     std::array<double, k_terms * k_terms> normal{};
     std::size_t used = 0;
@@ -82,71 +76,23 @@ bool LatticeFit::try_polynomial(std::span<const FitNode> nodes, int radius) {
     if (used + 1 < 2 * k_terms || !cholesky_.factor(normal, k_terms, k_min_pivot)) return false;
     Terms solution{1};  // whose first term is the value at (0, 0)
     cholesky_.solve(std::span(solution).first(k_terms));
-    tried_.resize(used);
-    double value = 0, variance = 0, amplification = 0;
+    weights_.resize(used);
+    double amplification = 0;
     std::size_t n = 0;
     visit_near(nodes, radius, [&](const FitNode& node, double kernel, const Terms& t) {
         double weight = 0;
         for (std::size_t i = 0; i < k_terms; ++i) weight += solution[i] * t[i];
         weight *= kernel;
-        tried_[n++] = {node.index, weight};
-        value += weight * node.value;
-        variance += weight * weight * node.variance;
+        weights_[n++] = {node.index, weight};
         amplification += weight * weight;
     });
-    tried_value_ = value;
-    tried_variance_ = variance;
     // Rejects an extrapolation that amplifies noise, in favour of a lower degree.
     return k_terms == 1 || amplification <= 1;
 }
 
-bool LatticeFit::try_within(std::span<const FitNode> nodes, int radius) {
-    return (radius >= 2 && try_polynomial<6>(nodes, radius)) || try_polynomial<3>(nodes, radius) ||
-           try_polynomial<1>(nodes, radius);
-}
-
-void LatticeFit::accept_tried(int radius) {
-    narrower_.swap(weights_);
-    weights_.swap(tried_);
-    variance_ = tried_variance_;
-    radius_ = radius;
-}
-
-void LatticeFit::clear() {
-    weights_.clear();
-    narrower_.clear();
-    variance_ = 0;
-    radius_ = -1;
-}
-
-void LatticeFit::fit(std::span<const FitNode> nodes, double tolerance) {
-    clear();
-    struct Accepted {
-        double value, deviation;
-    };
-    std::array<Accepted, k_fit_radii.size()> accepted{};
-    std::size_t count = 0;
-    for (const int radius : k_fit_radii) {
-        if (!try_within(nodes, radius)) continue;
-        const bool agrees =
-            std::all_of(accepted.begin(), accepted.begin() + static_cast<std::ptrdiff_t>(count),
-                        [&](const Accepted& narrower) {
-                            return std::abs(tried_value_ - narrower.value) <=
-                                   k_agreement * narrower.deviation + tolerance;
-                        });
-        if (count > 0 && !agrees) break;
-        accepted[count++] = {tried_value_, std::sqrt(tried_variance_)};
-        accept_tried(radius);
-        if (std::sqrt(variance_) < k_quiet * tolerance) break;
-    }
-}
-
-void LatticeFit::fit_within(std::span<const FitNode> nodes, int radius) {
-    clear();
-    const auto* wanted = std::ranges::lower_bound(k_fit_radii, radius);
-    if (wanted != k_fit_radii.begin() && try_within(nodes, *(wanted - 1)))
-        accept_tried(*(wanted - 1));
-    if (try_within(nodes, *wanted)) accept_tried(*wanted);
+bool LatticeFit::fit(std::span<const FitNode> nodes, int radius) {
+    return (radius >= k_min_radius_of_quadric && fit_polynomial<6>(nodes, radius)) ||
+           fit_polynomial<3>(nodes, radius) || fit_polynomial<1>(nodes, radius);
 }
 
 }  // namespace uw

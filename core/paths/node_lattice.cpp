@@ -80,7 +80,8 @@ IrradianceCache NodeLattice::light_surfaces(const NodePaths& paths,
     std::atomic<std::size_t> done = 0;
     parallel_for(unseen.size(), [&](std::size_t at) {
         SurfaceErrors errors;
-        estimator_.estimate_surface(unseen[at], paths.surface, lights[at], errors);
+        estimator_.estimate_surface(unseen[at], static_cast<int>(paths.mean().surface), lights[at],
+                                    errors);
         progress(k_visible_fraction + (1 - k_visible_fraction) * static_cast<double>(++done) /
                                           static_cast<double>(unseen.size()));
     });
@@ -298,76 +299,105 @@ constexpr double k_min_cost = 0.05;
 // The errors of nodes darker than this, relative to the mean light, count as if they were as
 // bright.
 constexpr double k_min_light = 0.1;
+// The numbers of paths are at least this, relative to their mean: the pilot's may have missed the
+// rare light of a dark part.
+constexpr double k_min_of_mean = 0.3;
+
+/// What a pilot knows of a part of the image, as means over the parts around it.
+struct PilotPart {
+    double light = 0;
+    PathNumbers variance;  // of a single path of each kind, relative to the squared light
+    PathNumbers cost;      // of a path of each kind
+};
+
+PilotPart part_of_pilot(const Grid2D<RadianceNode>& nodes, int i, int j, double min_light,
+                        double typical, int paths) {
+    PilotPart part{.variance = {0, 0, 0}, .cost = {0, 0, 0}};
+    double count = 0;
+    visit_around(nodes, i, j, 1, [&](const RadianceNode& node) {
+        ++count;
+        part.light += node.mean_light;
+        part.variance.lit += node.lit.variance;
+        part.variance.water += node.water.variance;
+        part.cost.lit += node.lit.work;
+        part.cost.water += node.water.work;
+        part.cost.surface += node.surface_work;
+        if (!node.surface) return;
+        // Each half's mean is over half the paths.
+        const double of_halves =
+            0.5 * (node.halves[0].diffuse_variance + node.halves[1].diffuse_variance);
+        const double throughput = throughput_of_diffuse(node, typical);
+        part.variance.surface +=
+            k_more_on_surfaces * of_halves * paths / 2 * throughput * throughput;
+    });
+    part.light = std::max(part.light / count, min_light);
+    for (double* variance : {&part.variance.surface, &part.variance.lit, &part.variance.water})
+        *variance /= count * part.light * part.light;
+    for (double* cost : {&part.cost.surface, &part.cost.lit, &part.cost.water})
+        *cost = std::max(*cost / count, k_min_cost);
+    return part;
+}
 
 }  // namespace
 
 // Numbers of paths in proportion to standard deviation / sqrt(cost) minimise the error. Errors are
-// relative to the light of each node, so that dark water counts as much as what a lamp lights up.
+// relative to the light of each part of the image, so that dark water counts as much as what a lamp
+// lights up.
 NodePaths plan_paths(const RadianceEstimator& estimator, const NodeEffort& effort) {
     constexpr int k_paths = 64, k_min_across = 5, k_max_across = 16;
     constexpr double k_pilot_fraction = 0.05;  // of the paths
     const int across =
         std::clamp(static_cast<int>(std::sqrt(k_pilot_fraction * effort.paths / k_paths)),
                    k_min_across, k_max_across);
-    NodeLattice pilot(estimator, NodeLattice::Positions::amid(estimator.rays(), across));
-    const NodePaths pilot_paths{k_paths, k_paths, k_paths};
+    const RaySource& rays = estimator.rays();
+    NodeLattice pilot(estimator, NodeLattice::Positions::amid(rays, across));
+    const NodePaths pilot_paths({k_paths, k_paths, k_paths});
     const ProgressCallback no_progress = [](double) {};
     const IrradianceCache indirect = pilot.light_surfaces(pilot_paths, no_progress);
     pilot.light_water(pilot.all(), pilot_paths, indirect, no_progress);
-    NodePaths paths;
-    const auto count = static_cast<double>(pilot.all().size());
-    for (const RadianceNode& node : pilot.raw()) {
-        paths.typical_water += node.estimated_water / count;
-        paths.typical_surface += node.estimated_surface / count;
-    }
-    const double typical = typical_diffuse(pilot.raw());
+    const Grid2D<RadianceNode>& nodes = pilot.raw();
+    const auto count = static_cast<double>(nodes.size());
     double light = 0;
-    for (const RadianceNode& node : pilot.raw()) light += node.mean_light / count;
-    // Variances of a single path relative to the light of its node.
-    double of_surface = 0, of_lit = 0, of_water = 0;
-    struct {
-        double surface, lit, water;
-    } cost{0, 0, 0};  // of the paths of each kind
-    for (const RadianceNode& node : pilot.raw()) {
-        const double node_light = std::max(node.mean_light, k_min_light * light);
-        if (!(node_light > 0)) continue;
-        const double water_scale = paths.water_scale(node),
-                     surface_scale = paths.surface_scale(node);
-        const double weight = 1 / (node_light * node_light);
-        of_lit += weight * node.lit.variance / water_scale;
-        of_water += weight * node.water.variance / water_scale;
-        cost.lit += water_scale * node.lit.work;
-        cost.water += water_scale * node.water.work;
-        cost.surface += surface_scale * node.surface_work;
-        if (!node.surface) continue;
-        // Each half's mean is over half the paths.
-        const double of_halves =
-            0.5 * (node.halves[0].diffuse_variance + node.halves[1].diffuse_variance);
-        const double variance = of_halves * k_paths / 2 / surface_scale;
-        const double throughput = throughput_of_diffuse(node, typical);
-        of_surface += weight * k_more_on_surfaces * variance * throughput * throughput;
+    for (const RadianceNode& node : nodes) light += node.mean_light / count;
+    const double typical = typical_diffuse(nodes);
+    Grid2D<NodePaths::Part> parts;
+    parts.assign(across, across);
+    double work = 0;
+    for (int j = 0; j < across; ++j) {
+        for (int i = 0; i < across; ++i) {
+            const PilotPart part =
+                part_of_pilot(nodes, i, j, k_min_light * light, typical, k_paths);
+            PathNumbers& numbers = parts(i, j).numbers;
+            const auto weigh = [&](double variance, double cost) {
+                work += std::sqrt(variance * cost) / count;
+                return std::sqrt(variance / cost);
+            };
+            numbers.surface = weigh(part.variance.surface, part.cost.surface);
+            numbers.lit = weigh(part.variance.lit, part.cost.lit);
+            numbers.water = weigh(part.variance.water, part.cost.water);
+            parts(i, j).estimated_water = nodes(i, j).estimated_water;
+            parts(i, j).estimated_surface = nodes(i, j).estimated_surface;
+        }
     }
-    for (double* of_kind : {&cost.surface, &cost.lit, &cost.water})
-        *of_kind = std::max(*of_kind / count, k_min_cost);
-    const double surface = std::sqrt(of_surface / cost.surface);
-    const double lit = std::sqrt(of_lit / cost.lit), water = std::sqrt(of_water / cost.water);
-    const double work = surface * cost.surface + lit * cost.lit + water * cost.water;
     double scale = work > 0 ? k_work_of_effort * effort.paths / effort.nodes / work : 0;
-    if (work > 0 && effort.error > 0) {
-        const double variance = effort.error * effort.error;
-        scale = std::min(scale, k_smoothed_variance * work / count / variance);
+    if (work > 0 && effort.error > 0)
+        scale = std::min(scale, k_smoothed_variance * work / (effort.error * effort.error));
+    for (double PathNumbers::*kind :
+         {&PathNumbers::surface, &PathNumbers::lit, &PathNumbers::water}) {
+        double mean = 0;
+        for (const NodePaths::Part& part : parts) mean += part.numbers.*kind / count;
+        for (NodePaths::Part& part : parts)
+            part.numbers.*kind =
+                std::clamp(scale * std::max(part.numbers.*kind, k_min_of_mean * mean),
+                           k_min_node_paths, k_max_node_paths);
     }
-    const auto number = [&](double of_kind) {
-        return static_cast<int>(std::clamp(scale * of_kind, k_min_node_paths, k_max_node_paths));
-    };
     // The few paths that meet water close to a lamp are bright, and too few of them leave spots.
     constexpr double k_min_in_water = 8;
-    const int min_water_paths =
-        static_cast<int>(std::min(k_min_in_water, effort.paths / effort.nodes));
-    paths.surface = number(surface);
-    paths.lit = number(lit);
-    paths.water = std::max(number(water), min_water_paths);
-    return paths;
+    for (NodePaths::Part& part : parts)
+        part.numbers.water =
+            std::max(part.numbers.water, std::min(k_min_in_water, effort.paths / effort.nodes));
+    return {std::move(parts), static_cast<double>(rays.width()),
+            static_cast<double>(rays.height())};
 }
 
 }  // namespace uw

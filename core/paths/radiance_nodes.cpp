@@ -31,18 +31,10 @@ double variance_of_half(double sum, double squares) {
     return std::max(0.0, squares / k_batches_of_half - mean * mean) / (k_batches_of_half - 1);
 }
 
-int scaled(int paths, double scale) {
-    return static_cast<int>(std::lround(paths * scale));
-}
-
 void store(std::span<const double> sums, double scale, std::vector<float>& values) {
     values.resize(sums.size());
     for (std::size_t i = 0; i < sums.size(); ++i) values[i] = static_cast<float>(sums[i] * scale);
 }
-
-}  // namespace
-
-namespace {
 
 double scale_for(double expected, double typical) {
     constexpr double k_max_of_typical = 16;
@@ -51,12 +43,52 @@ double scale_for(double expected, double typical) {
 
 }  // namespace
 
-double NodePaths::water_scale(const RadianceNode& node) const {
-    return scale_for(node.estimated_water, typical_water);
+NodePaths::NodePaths(const PathNumbers& numbers) : mean_(numbers) {
+    parts_.assign(1, 1, Part{.numbers = numbers});
 }
 
-double NodePaths::surface_scale(const RadianceNode& node) const {
-    return scale_for(node.estimated_surface, typical_surface);
+NodePaths::NodePaths(Grid2D<Part> parts, double width, double height)
+    : parts_(std::move(parts)), width_(width), height_(height), mean_{0, 0, 0} {
+    const auto count = static_cast<double>(parts_.size());
+    for (const Part& part : parts_) {
+        mean_.surface += part.numbers.surface / count;
+        mean_.lit += part.numbers.lit / count;
+        mean_.water += part.numbers.water / count;
+    }
+}
+
+NodePaths::Part NodePaths::part_at(double x, double y) const {
+    const auto split = [](double at, int parts) {
+        const double place = std::clamp(at * parts - 0.5, 0.0, static_cast<double>(parts - 1));
+        const int first = std::min(static_cast<int>(place), std::max(0, parts - 2));
+        return std::pair(first, place - first);
+    };
+    const auto [i, u] = split(x / width_, parts_.width());
+    const auto [j, v] = split(y / height_, parts_.height());
+    Part sum{.numbers = {0, 0, 0}};
+    const auto add = [&](int column, int row, double weight) {
+        if (!(weight > 0)) return;
+        const Part& part = parts_(column, row);
+        sum.numbers.surface += weight * part.numbers.surface;
+        sum.numbers.lit += weight * part.numbers.lit;
+        sum.numbers.water += weight * part.numbers.water;
+        sum.estimated_water += weight * part.estimated_water;
+        sum.estimated_surface += weight * part.estimated_surface;
+    };
+    add(i, j, (1 - u) * (1 - v));
+    add(i + 1, j, u * (1 - v));
+    add(i, j + 1, (1 - u) * v);
+    add(i + 1, j + 1, u * v);
+    return sum;
+}
+
+PathNumbers NodePaths::of(const RadianceNode& node, double x, double y) const {
+    const Part part = part_at(x, y);
+    const double in_water = scale_for(node.estimated_water, part.estimated_water);
+    return {
+        .surface = part.numbers.surface * scale_for(node.estimated_surface, part.estimated_surface),
+        .lit = part.numbers.lit * in_water,
+        .water = part.numbers.water * in_water};
 }
 
 struct RadianceEstimator::Workspace {
@@ -143,8 +175,9 @@ void RadianceEstimator::estimate_surface(const Place& place, const NodePaths& pa
     const bool has_hit = scene_.surfaces->closest_hit(*ray, k_far, sample.hit);
     begin(sample, has_hit, w, node);
     if (!has_hit) return;
-    node.surface_scale = paths.surface_scale(node);
-    trace_surface(place.seed, scaled(paths.surface, node.surface_scale), w, node);
+    const double number = paths.of(node, place.x, place.y).surface;
+    node.surface_scale = number / paths.mean().surface;
+    trace_surface(place.seed, static_cast<int>(std::lround(number)), w, node);
 }
 
 Point3 RadianceEstimator::find_lit_surfaces(const Place& place, int paths,
@@ -250,10 +283,11 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
     w.batch_mean.assign(count, 0.0);
     w.lit_indirect.assign(bands(), 0.0);
     WaterSum sum(intervals_, groups_, bands(), w);
-    node.water_scale = paths.water_scale(node);
-    const auto trace = [&](NodeStream stream, int batch, int all, RadianceNode::Moments& moments,
+    const PathNumbers numbers = paths.of(node, place.x, place.y);
+    node.water_scale = (numbers.lit + numbers.water) / (paths.mean().lit + paths.mean().water);
+    const auto trace = [&](NodeStream stream, int batch, double all, RadianceNode::Moments& moments,
                            const auto& trace_one) {
-        const int in_batch = std::max(1, all / k_node_batches);
+        const int in_batch = std::max(1, static_cast<int>(std::lround(all / k_node_batches)));
         const int in_all = in_batch * k_node_batches;
         for (int i = 0; i < in_batch; ++i) {
             PathRandom random(
@@ -273,14 +307,12 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
             w.interval_mean.assign(count, 0.0);
             w.interval_squares.assign(count, 0.0);
         }
-        trace(k_node_lit, batch, scaled(paths.lit, node.water_scale), node.lit,
-              [&](PathRandom& random) {
-                  return transport_.paths->trace_lit_surfaces(w.segment, indirect, random, sum);
-              });
-        trace(k_node_water, batch, scaled(paths.water, node.water_scale), node.water,
-              [&](PathRandom& random) {
-                  return transport_.paths->trace_water(w.segment, random, sum);
-              });
+        trace(k_node_lit, batch, numbers.lit, node.lit, [&](PathRandom& random) {
+            return transport_.paths->trace_lit_surfaces(w.segment, indirect, random, sum);
+        });
+        trace(k_node_water, batch, numbers.water, node.water, [&](PathRandom& random) {
+            return transport_.paths->trace_water(w.segment, random, sum);
+        });
         for (std::size_t i = 0; i < count; ++i) {
             const double mean = std::exchange(w.batch_mean[i], 0.0) * per_band;
             w.interval_mean[i] += mean;

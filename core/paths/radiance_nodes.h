@@ -36,7 +36,7 @@ struct NodeRadiance {
     // Sums over the groups, means over the bands:
     std::vector<float> water_mean;  // by interval
     double diffuse_mean = 0;
-    // The variances of these as estimated from the batches, inverse to NodePaths' scales.
+    // The variances of these as estimated from the batches, inverse to the scales below.
     std::vector<float> water_variance;
     double diffuse_variance = 0;
 };
@@ -63,28 +63,49 @@ struct RadianceNode {
     std::vector<float> lit_indirect;
     /// Two independent estimates: decisions by one are applied to the other.
     std::array<NodeRadiance, 2> halves;
-    double water_scale = 1, surface_scale = 1;  // see NodePaths
+    // Its numbers of paths relative to the mean of all nodes.
+    double water_scale = 1, surface_scale = 1;
     /// The light of a single path, as a mean over the bands, its variance, and its work.
     struct Moments {
         double mean = 0, variance = 0, work = 0;
     };
-    Moments lit, water;       // of paths as in NodePaths
+    Moments lit, water;       // of paths as in PathNumbers
     double surface_work = 0;  // of a path from the surface
 };
 
-/// The number of light paths of each kind at a node whose expected light is typical, or less.
-/// Brighter nodes, which are few and lie around lamps, get more.
-struct NodePaths {
-    int surface = 512;  // from the node's surface: indirect light on it
-    int lit = 512;      // to surfaces that are visible through scattering
-    int water = 512;    // in the water alone
-    // The mean expected light of the nodes; 0: all nodes get the same numbers.
-    double typical_water = 0, typical_surface = 0;
+/// The numbers of light paths of each kind at a node.
+struct PathNumbers {
+    double surface = 512;  // from the node's surface: indirect light on it
+    double lit = 512;      // to surfaces that are visible through scattering
+    double water = 512;    // in the water alone
+};
 
-    /// The factors of a node's numbers of paths: of those in the water, and of those from its
-    /// surface.
-    double water_scale(const RadianceNode& node) const;
-    double surface_scale(const RadianceNode& node) const;
+/// Where in the image how many paths are traced.
+class NodePaths {
+  public:
+    /// What holds in a part of the image: the numbers of a node whose expected light is that of the
+    /// part, or less. Brighter nodes, which are few and lie around lamps, get more.
+    struct Part {
+        PathNumbers numbers;
+        double estimated_water = 0, estimated_surface = 0;  // as RadianceNode's; 0: not known
+    };
+
+    /// The same numbers everywhere.
+    explicit NodePaths(const PathNumbers& numbers);
+    /// `parts`: of an image of this size [pixels], at their centres; linear in between.
+    NodePaths(Grid2D<Part> parts, double width, double height);
+
+    /// Those of the whole image.
+    const PathNumbers& mean() const { return mean_; }
+    /// Those of a node that was begun, at a position in the image [pixels].
+    PathNumbers of(const RadianceNode& node, double x, double y) const;
+
+  private:
+    Part part_at(double x, double y) const;
+
+    Grid2D<Part> parts_;
+    double width_ = 1, height_ = 1;
+    PathNumbers mean_;
 };
 
 /// Estimates the radiance at nodes by light paths. Thread safe.
