@@ -131,6 +131,8 @@ py::dict report(const ImageObject& image) {
     dict["error"] = r.paths.error;
     dict["multiple_error"] = r.multiple_error;
     dict["multiple_error_of_bands"] = r.multiple_error_of_bands;
+    dict["multiple_error_of_parts"] = r.multiple_error_of_parts;
+    dict["multiple_error_of_worst_part"] = r.multiple_error_of_worst_part;
     dict["exposure_parts"] = r.exposure_parts;
     dict["colour_groups"] = r.colour_groups;
     dict["motion_pixels"] = r.motion_pixels;
@@ -163,7 +165,8 @@ py::tuple report_state(const RenderReport& r) {
                           std::array{r.pixels, r.camera_rays, r.splat_rays, r.light_bytes,
                                      r.active_voxels, r.grid_bytes, r.triangles, r.lamps, r.bands,
                                      r.exposure_parts, r.exposure_samples, r.colour_groups},
-                          r.multiple_error_of_bands);
+                          r.multiple_error_of_bands, r.multiple_error_of_parts,
+                          r.multiple_error_of_worst_part);
 }
 
 RenderReport report_of_state(const py::tuple& state) {
@@ -174,6 +177,8 @@ RenderReport report_of_state(const py::tuple& state) {
     r.warnings = state[4].cast<std::vector<std::string>>();
     r.motion_pixels = state[5].cast<double>();
     r.multiple_error_of_bands = state[7].cast<std::vector<double>>();
+    r.multiple_error_of_parts = state[8].cast<double>();
+    r.multiple_error_of_worst_part = state[9].cast<double>();
     const auto counts = state[6].cast<std::array<std::uint64_t, 12>>();
     std::size_t next = 0;
     for (std::uint64_t* count : {&r.pixels, &r.camera_rays, &r.splat_rays, &r.light_bytes,

@@ -193,6 +193,8 @@ ImageMetadata metadata_of(const AssembledScene& scene, std::optional<int> frame,
     if (report.multiple_error) {
         m["uwvdb/multiple_error"] = *report.multiple_error;
         m["uwvdb/multiple_error_of_bands"] = band_list(report.multiple_error_of_bands);
+        m["uwvdb/multiple_error_of_parts"] = report.multiple_error_of_parts;
+        m["uwvdb/multiple_error_of_worst_part"] = report.multiple_error_of_worst_part;
     }
     if (report.exposure_parts > 0) {
         m["uwvdb/exposure_parts"] = static_cast<double>(report.exposure_parts);

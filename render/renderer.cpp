@@ -21,7 +21,7 @@ namespace uw {
 
 namespace {
 
-// Estimated standard error above which final images come with a warning, relative to their mean.
+// The estimated standard error of their parts above which final images come with a warning.
 constexpr double k_max_multiple_error = 0.03;
 
 PixelWindow whole_image(const CameraDesc& camera) {
@@ -195,13 +195,16 @@ void Renderer::warn_of_error(const PathRequest& request) {
 
 void Renderer::warn_of_multiple_error() {
     const RenderDesc::Quality quality = scene_->desc().render.quality;
-    if (quality == RenderDesc::Quality::draft || !(report_.multiple_error > k_max_multiple_error))
+    if (quality == RenderDesc::Quality::draft ||
+        !(report_.multiple_error_of_parts > k_max_multiple_error))
         return;
     const char* const better = quality == RenderDesc::Quality::exact ? "" : "--quality exact, or ";
     report_.warnings.push_back(fmt::format(
-        "multiple scattering: its standard error is {:.2g} % of the image's mean; for less, use "
-        "{}--integrator path with --error 0.02{}",
-        100 * *report_.multiple_error, better, see_troubleshooting("Blotches, grain and spots")));
+        "multiple scattering: its standard error is {:.2g} % of the light in each part of the "
+        "image, "
+        "{:.2g} % in the worst; for less, use {}--integrator path with --error 0.02{}",
+        100 * report_.multiple_error_of_parts, 100 * report_.multiple_error_of_worst_part, better,
+        see_troubleshooting("Blotches, grain and spots")));
 }
 
 StageProgressCallback Renderer::progress_of_group(std::size_t group, std::size_t groups) const {

@@ -189,6 +189,8 @@ void FrameRenderer::count_work(const RenderReport& report) {
     if (report.multiple_error) {
         stats_.measure("multiple_error", *report.multiple_error);
         stats_.measure("multiple_error_of_bands", report.multiple_error_of_bands);
+        stats_.measure("multiple_error_of_parts", report.multiple_error_of_parts);
+        stats_.measure("multiple_error_of_worst_part", report.multiple_error_of_worst_part);
     }
     if (report.paths.samples == 0) return;
     stats_.count("samples", static_cast<std::uint64_t>(report.paths.samples));
@@ -211,8 +213,11 @@ ImageWork FrameRenderer::take(std::size_t place, FinishedImage image) {
     if (report.paths.samples > 0)
         say(fmt::format("{} of the image's mean", describe(report.paths)));
     if (report.multiple_error)
-        say(fmt::format("multiple scattering: standard error {:.2g} % of the image's mean{}",
-                        100 * *report.multiple_error,
+        say(
+            fmt::format("multiple scattering: standard error {:.2g} % of the light in each part of "
+                        "the image, {:.2g} % in the worst; {:.2g} % of the image's mean{}",
+                        100 * report.multiple_error_of_parts,
+                        100 * report.multiple_error_of_worst_part, 100 * *report.multiple_error,
                         describe_bands(report.multiple_error_of_bands,
                                        engine_.renderer().scene().desc().water.bands_nm)));
     if (!report.light_note.empty()) say("note: " + report.light_note);

@@ -36,6 +36,9 @@ struct ImageProgress {
     /// the image, relative to its mean, and of each band, relative to the band's mean.
     std::optional<double> multiple_error;
     std::vector<double> multiple_error_of_bands;
+    /// That of the parts of the image, squares of a tenth of its height, relative to the light of
+    /// each: the RMS over the parts, and the worst of them.
+    double multiple_error_of_parts = 0, multiple_error_of_worst_part = 0;
     std::uint64_t snow_particles = 0;  // drawn
 
     /// Includes another image of the same scene, in other bands: keeps the maximum of each value.
@@ -48,6 +51,9 @@ struct ImageProgress {
     /// Includes the errors of another image: keeps the maximum of each.
     void include_multiple_error(const ImageProgress& other) {
         multiple_error = std::max(multiple_error, other.multiple_error);
+        multiple_error_of_parts = std::max(multiple_error_of_parts, other.multiple_error_of_parts);
+        multiple_error_of_worst_part =
+            std::max(multiple_error_of_worst_part, other.multiple_error_of_worst_part);
         multiple_error_of_bands.resize(
             std::max(multiple_error_of_bands.size(), other.multiple_error_of_bands.size()));
         for (std::size_t b = 0; b < other.multiple_error_of_bands.size(); ++b)

@@ -141,6 +141,10 @@ TEST_F(Paths, OfTheFastFormHaveAStatedError) {
         EXPECT_GT(of_band, 0);
         EXPECT_LT(of_band, 0.1);
     }
+    EXPECT_NE(result.err.find(" % of the light in each part of the image, "), std::string::npos)
+        << result.err;
+    EXPECT_GT(stats.at("multiple_error_of_parts"), 0);
+    EXPECT_GT(stats.at("multiple_error_of_worst_part"), stats.at("multiple_error_of_parts"));
     EXPECT_FALSE(stats.contains("error"));
     EXPECT_FALSE(stats.contains("samples"));
     EXPECT_TRUE(stats.at("seconds").contains("multiple scattering"));
@@ -148,6 +152,9 @@ TEST_F(Paths, OfTheFastFormHaveAStatedError) {
     EXPECT_NEAR(std::stod(image.metadata.at("uwvdb/multiple_error")), stats.at("multiple_error"),
                 1e-6);
     EXPECT_TRUE(image.metadata.contains("uwvdb/multiple_error_of_bands"));
+    EXPECT_NEAR(std::stod(image.metadata.at("uwvdb/multiple_error_of_parts")),
+                stats.at("multiple_error_of_parts"), 1e-6);
+    EXPECT_TRUE(image.metadata.contains("uwvdb/multiple_error_of_worst_part"));
     EXPECT_FALSE(image.metadata.contains("uwvdb/error"));
     EXPECT_TRUE(image.channels.contains("error.R"));
     EXPECT_EQ(image.metadata.at("uwvdb/scattering"), "multiple");

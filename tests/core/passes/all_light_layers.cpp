@@ -200,6 +200,37 @@ TEST_P(StatedErrors, AreThoseOfTheDeviationsFromLightPaths) {
     }
 }
 
+// Squares of a tenth of the height, each relative to its own light by band, or to a hundredth of
+// the image's mean.
+TEST_P(StatedErrors, OfPartsAreRelativeToTheirLight) {
+    const LightOfImage image(scene(GetParam()));
+    const int side = image.height / 10;
+    double sum = 0, worst = 0;
+    int parts = 0;
+    for (int y0 = 0; y0 < image.height; y0 += side) {
+        for (int x0 = 0; x0 < image.width; x0 += side) {
+            double of_part = 0;
+            for (std::size_t band = 0; band < image.bands; ++band) {
+                double light = 0, squares = 0, pixels = 0;
+                for (int y = y0; y < std::min(y0 + side, image.height); ++y)
+                    for (int x = x0; x < std::min(x0 + side, image.width); ++x) {
+                        light += image.all[image.index(x, y, band)];
+                        squares += std::pow(image.error[image.index(x, y, band)], 2);
+                        ++pixels;
+                    }
+                const double mean = std::max(light / pixels, 0.01 * image.total[band]);
+                of_part += squares / pixels / (mean * mean) / static_cast<double>(image.bands);
+            }
+            sum += of_part;
+            worst = std::max(worst, of_part);
+            ++parts;
+        }
+    }
+    // Floats.
+    EXPECT_NEAR(image.stated_of_parts, std::sqrt(sum / parts), 1e-4 * image.stated_of_parts);
+    EXPECT_NEAR(image.stated_of_worst_part, std::sqrt(worst), 1e-4 * image.stated_of_worst_part);
+}
+
 INSTANTIATE_TEST_SUITE_P(, StatedErrors,
                          testing::Values(k_emissive_wall, k_two_spots, k_plume_in_haze));
 

@@ -34,7 +34,8 @@ struct LightOfImage {
     std::size_t bands = 0;
     std::vector<double> light, error;
     std::vector<double> total;  // with all that is scattered or reflected once, by band: the mean
-    double stated = 0;
+    std::vector<double> all;    // with it, by pixel and band
+    double stated = 0, stated_of_parts = 0, stated_of_worst_part = 0;
     std::vector<double> stated_of_bands;
 
     explicit LightOfImage(const SceneDesc& desc) {
@@ -57,13 +58,16 @@ struct LightOfImage {
                 for (std::size_t b = 0; b < bands; ++b) {
                     light.push_back(value(Layer::multiple, x, y, b));
                     error.push_back(value(Layer::error, x, y, b));
-                    total[b] += weight * (light.back() + value(Layer::direct, x, y, b) +
-                                          value(Layer::backscatter, x, y, b));
+                    all.push_back(light.back() + value(Layer::direct, x, y, b) +
+                                  value(Layer::backscatter, x, y, b));
+                    total[b] += weight * all.back();
                 }
             }
         }
         stated = renderer.report().multiple_error.value_or(0);
         stated_of_bands = renderer.report().multiple_error_of_bands;
+        stated_of_parts = renderer.report().multiple_error_of_parts;
+        stated_of_worst_part = renderer.report().multiple_error_of_worst_part;
     }
 
     std::size_t index(int x, int y, std::size_t band) const {
