@@ -75,6 +75,12 @@ install(TARGETS uwvdb_library EXPORT uwvdbTargets
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/uwvdb COMPONENT development)
 
+# All that is installed, whatever else is configured, such as tests: what scripts/demo builds.
+get_property(uwvdb_loaded_modules GLOBAL PROPERTY UWVDB_LOADED_MODULES)
+add_custom_target(uwvdb_installed)
+add_dependencies(uwvdb_installed uwvdb uwvdb_library uwvdb_printed uwvdb_blender_addon
+                 ${uwvdb_loaded_modules})
+
 set(uwvdb_package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/uwvdb)
 configure_package_config_file(cmake/uwvdbConfig.cmake.in ${PROJECT_BINARY_DIR}/uwvdbConfig.cmake
                               INSTALL_DESTINATION ${uwvdb_package_folder})

@@ -1,7 +1,9 @@
-# uwvdb_add_module(FOLDER [USES MODULE...] [LIBRARIES TARGET...] [GENERATED SOURCE...]):
+# uwvdb_add_module(FOLDER [NOT_PER_RAY] [USES MODULE...] [LIBRARIES TARGET...] [GENERATED SOURCE...]):
 # makes a library of the sources in FOLDER (not of those in its subfolders), named after it:
 # core/scene is uwvdb_core_scene. USES lists the modules that it may include, and is what
-# scripts/check-layers reads; LIBRARIES are third-party ones that only its sources see.
+# scripts/check-layers reads; LIBRARIES are third-party ones that only its sources see. NOT_PER_RAY says
+# that nothing in it runs for each ray, pixel or voxel: it is compiled with -O1, which takes two thirds of
+# the time.
 #
 # The linker checks the list as well: the target uwvdb_modules_alone links each module's objects
 # once more, as a shared library that must find all of its symbols in the modules of its USES and,
@@ -9,7 +11,7 @@
 add_custom_target(uwvdb_modules_alone)
 
 function(uwvdb_add_module folder)
-    cmake_parse_arguments(arg "" "" "USES;LIBRARIES;GENERATED" ${ARGN})
+    cmake_parse_arguments(arg "NOT_PER_RAY" "" "USES;LIBRARIES;GENERATED" ${ARGN})
     string(REPLACE "/" "_" target uwvdb_${folder})
     list(TRANSFORM arg_USES REPLACE "/" "_")
     list(TRANSFORM arg_USES PREPEND "uwvdb_")
@@ -28,6 +30,9 @@ function(uwvdb_add_module folder)
     add_library(${target} STATIC ${sources})
     target_link_libraries(${target} PUBLIC uwvdb_options ${arg_USES} PRIVATE ${arg_LIBRARIES})
     set_property(GLOBAL APPEND PROPERTY UWVDB_MODULES ${target})
+    if(arg_NOT_PER_RAY)
+        target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+    endif()
 
     add_library(${target}_alone SHARED EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${target}>)
     target_link_libraries(${target}_alone
@@ -43,6 +48,7 @@ endfunction()
 function(uwvdb_add_loaded_module name component library)
     add_library(${name} MODULE ${ARGN})
     target_link_libraries(${name} PRIVATE uwvdb_options ${library})
+    set_property(GLOBAL APPEND PROPERTY UWVDB_LOADED_MODULES ${name})
     set_target_properties(${name} PROPERTIES
         PREFIX ""
         LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/uwvdb)

@@ -51,9 +51,9 @@ if(TARGET uwvdb_image_formats OR TARGET uwvdb_colour_views)
     set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS uwvdb-image-formats)
     set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS uwvdb-image-formats)
     set(CPACK_DEBIAN_IMAGE_FORMATS_DESCRIPTION
-        "Lets uwvdb read textures in TIFF, OpenEXR, Radiance HDR, TGA, BMP, WebP and
-PSD, write images in most of these and DPX, by OpenImageIO, and show them through
-the views of OpenColorIO configs.")
+        "Lets uwvdb read textures in TIFF, Radiance HDR, TGA, BMP, WebP and PSD, write
+images in most of these and DPX, by OpenImageIO, and show them through the views of
+OpenColorIO configs.")
 endif()
 if(TARGET uwvdb_fitting)
     list(APPEND CPACK_COMPONENTS_ALL fitting)

@@ -11,10 +11,9 @@ namespace uw {
 void* address_in_fitting(const char* symbol) {
     const ModuleFunction found = load_function(min_squares_module::k_name, symbol);
     if (found.address == nullptr)
-        throw UsageError(
-            fmt::format("fitting needs Ceres and OpenCV ({}); {}{}", found.fault,
-                        how_to_install("uwvdb-fitting", "libceres-dev and libopencv-calib3d-dev"),
-                        see_troubleshooting("Installing")));
+        throw UsageError(fmt::format("fitting needs Ceres and OpenCV ({}); {}{}", found.fault,
+                                     how_to_install("uwvdb-fitting"),
+                                     see_troubleshooting("Installing")));
     return found.address;
 }
 

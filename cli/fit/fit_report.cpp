@@ -8,8 +8,8 @@
 #include <span>
 #include <utility>
 
-#include "cli/html_page.h"
-#include "cli/svg_plot.h"
+#include "cli/pages/html_page.h"
+#include "cli/pages/svg_plot.h"
 #include "core/base/csv_table.h"
 #include "core/base/json.h"
 #include "core/base/text.h"

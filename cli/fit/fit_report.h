@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "cli/pages/svg_plot.h"
 #include "cli/report.h"
-#include "cli/svg_plot.h"
 #include "fit/picture_residuals.h"
 #include "fit/point_residuals.h"
 #include "fit/robust_fit.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cli/svg_plot.h"
+#include "cli/pages/svg_plot.h"
 #include "core/base/text.h"
 #include "render/image_scene.h"
 

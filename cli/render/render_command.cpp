@@ -18,6 +18,7 @@
 #include "cli/render/frame_renderer.h"
 #include "cli/render/frame_sequence.h"
 #include "cli/render/image_output.h"
+#include "cli/render/render_arguments.h"
 #include "cli/render/run_scenes.h"
 #include "cli/render/run_stats.h"
 #include "core/base/error.h"
@@ -208,8 +209,6 @@ FrameSequence images_of(const RenderArguments& a, RunScenes& scenes, VariationMa
     return sequence;
 }
 
-}  // namespace
-
 void run_render(const RenderArguments& typed) {
     RenderArguments a = typed;
     if (a.resume && a.frames.empty() && !a.all_frames && a.is_scene_itself())
@@ -280,6 +279,8 @@ void run_render(const RenderArguments& typed) {
                               format_duration(elapsed.count()),
                               static_cast<double>(RunStats::peak_memory_bytes()) / 1e6));
 }
+
+}  // namespace
 
 Command render_command() {
     const auto arguments = std::make_shared<RenderArguments>();

@@ -1,16 +1,12 @@
 #pragma once
 
 #include "cli/command.h"
-#include "cli/render/render_arguments.h"
 
 namespace uw {
 
 /// `uwvdb render`: reads the scene, renders it and writes the EXR, its preview and whatever else
 /// the arguments request, each file whole or not at all. Reports on stderr. Throws UsageError,
 /// InputError and Interrupted, and then no file has been touched; IoError.
-void run_render(const RenderArguments& arguments);
-
-/// `uwvdb render` as the command line knows it.
 Command render_command();
 
 }  // namespace uw

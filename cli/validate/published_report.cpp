@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "cli/html_page.h"
-#include "cli/svg_plot.h"
+#include "cli/pages/html_page.h"
+#include "cli/pages/svg_plot.h"
 #include "core/base/version.h"
 #include "render/validation/published_tables.h"
 

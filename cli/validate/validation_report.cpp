@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cli/html_page.h"
-#include "cli/svg_plot.h"
+#include "cli/pages/html_page.h"
+#include "cli/pages/svg_plot.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/image/colour.h"

@@ -58,10 +58,9 @@ std::shared_ptr<ColourView> make_view(const ViewDesc& desc, const std::string& c
                                       const std::string& where) {
     static const ModuleFunction module = load_function("uwvdb_colour_views", k_make_view);
     if (module.address == nullptr)
-        throw InputError(
-            fmt::format("{}: a view needs OpenColorIO ({}); {}; or take it out for sRGB{}", where,
-                        module.fault, how_to_install("uwvdb-image-formats", "libopencolorio-dev"),
-                        see_troubleshooting("Installing")));
+        throw InputError(fmt::format(
+            "{}: a view needs OpenColorIO ({}); {}; or take it out for sRGB{}", where, module.fault,
+            how_to_install("uwvdb-image-formats"), see_troubleshooting("Installing")));
     ViewRequest request{config, desc.display, desc.view, desc.look, desc.input, {}};
     const NamedBy named_by = desc.config.empty() ? NamedBy::user : NamedBy::scene;
     admit_input(config, fmt::format("{}: '{}'", where, printable(config, 300)),

@@ -71,7 +71,7 @@ namespace {
 
 constexpr const char* k_module = "uwvdb_image_formats";
 std::string how_to_install_module() {
-    return how_to_install("uwvdb-image-formats", "libopenimageio-dev");
+    return how_to_install("uwvdb-image-formats");
 }
 
 PixelImage in_range(ImageRange range, PixelImage image) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -16,9 +17,14 @@ struct ModuleFunction {
     std::string fault;
 };
 
-/// What to do where a module is not there, for a message: it comes with the package `package`, and
-/// a build from source has it where `development` is installed when CMake looks.
-std::string how_to_install(std::string_view package, std::string_view development);
+/// The program or library that this code is in, or an empty path where the system does not tell.
+std::filesystem::path own_file();
+
+/// What to do where a module is not there, for a message. A `program` that came as a Debian package
+/// gets it with the package `package`; one that was built from source, by scripts/demo, which says
+/// more if the program has been installed from there.
+std::string how_to_install(std::string_view package,
+                           const std::filesystem::path& program = own_file());
 
 /// The function `symbol` of the module `name`, which stays loaded until the program ends.
 ModuleFunction load_function(const char* name, const char* symbol);

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "cli/water_report.h"
+#include "cli/tools/water_report.h"
 
 /// Small reports on water for the tests of what is made of them.
 namespace uw::test {

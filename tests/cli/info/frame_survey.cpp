@@ -57,7 +57,8 @@ TEST_F(Sequences, HaveOneAdviceWhicheverFrameIsLookedAt) {
     frame(2, 10, 0.5);
     frame(3, 30);
     const ParsedJson all = info();
-    for (const char* number : {"1001", "1002", "1003"}) {
+    ASSERT_EQ(all.at("sequence").at("frame"), 1002);  // the first with anything in it
+    for (const char* number : {"1001", "1003"}) {
         const ParsedJson one = info({"--frame", number});
         EXPECT_EQ(one.at("sequence").at("frame").dump(), number);
         EXPECT_EQ(one.at("advice"), all.at("advice")) << number;

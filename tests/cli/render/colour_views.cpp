@@ -243,7 +243,7 @@ TEST_F(ColourViews, AreRefusedWithoutTheirModule) {
         {.folder = folder_.path(), .program = folder_ / "alone"});
     EXPECT_EQ(result.exit_code, 3);
     EXPECT_NE(result.err.find("a view needs OpenColorIO (the module uwvdb_colour_views is not "
-                              "installed); install the package uwvdb-image-formats"),
+                              "installed); run scripts/demo in the repository"),
               std::string::npos)
         << result.err;
     EXPECT_EQ(test::line_count(result.err), 1);

@@ -118,9 +118,9 @@ TEST_F(OutputFormats, AreRefusedInOneLine) {
         test::run_program({"render", "scene.yaml", "-o", "out.tif"},
                           {.folder = folder_.path(), .program = folder_ / "alone"});
     EXPECT_EQ(result.exit_code, 2);
-    EXPECT_NE(result.err.find("-o out.tif: TIFF files need OpenImageIO (the module "
-                              "uwvdb_image_formats is not installed); install the package "
-                              "uwvdb-image-formats"),
+    EXPECT_NE(result.err.find(
+                  "-o out.tif: TIFF files need OpenImageIO (the module "
+                  "uwvdb_image_formats is not installed); run scripts/demo in the repository"),
               std::string::npos)
         << result.err;
     EXPECT_EQ(test::line_count(result.err), 1);

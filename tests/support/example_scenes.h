@@ -1,0 +1,86 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/support/cli_test.h"
+
+namespace uw::test {
+
+/// Those of assets/scenes that take 15 s each, whatever the size: all light below a wavy surface.
+inline constexpr std::array<std::string_view, 2> k_long_scenes{"harbour.yaml", "sunlit.yaml"};
+
+/// Renders the scenes of assets/scenes as they are.
+class ExampleScenes : public CliTest {
+  protected:
+    // Renders a scene of the project small; it must be lit, finite and free of doubts.
+    void expect_renders(const std::filesystem::path& scene,
+                        const std::vector<std::string>& more = {}) const {
+        std::vector<std::string> arguments{"render", scene.string(), "-o", "out.exr",  "--size",
+                                           "96x54",  "--samples",    "1",  "--layers", "all"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const ProgramResult result = run(arguments);
+        ASSERT_EQ(result.exit_code, 0) << scene << result.err;
+        expect_no_doubts(result.err, scene);
+        int images = 0;  // a rig makes one for each camera
+        for (const auto& entry : std::filesystem::directory_iterator(folder_.path())) {
+            if (entry.path().extension() != ".exr") continue;
+            expect_lit(read_exr(entry.path()), scene);
+            std::filesystem::remove(entry.path());
+            ++images;
+        }
+        EXPECT_GE(images, 1) << scene;
+    }
+
+    // The standard error [%] of multiple scattering that a scene's first lines state; without one
+    // 0.
+    static double stated_error(const std::filesystem::path& scene) {
+        std::ifstream file(scene);
+        const std::string text(std::istreambuf_iterator<char>(file), {});
+        std::smatch found;
+        return std::regex_search(text, found, std::regex("error of ([0-9]+) %"))
+                   ? std::stod(found[1])
+                   : 0;
+    }
+
+    // Light may be as far off as its scene states, in whole per cent, and the test's images are
+    // wider than some cameras were made for.
+    static void expect_no_doubts(const std::string& messages, const std::filesystem::path& scene) {
+        const std::string error = "warning: multiple scattering: its standard error is ";
+        std::istringstream lines(messages);
+        for (std::string line; std::getline(lines, line);) {
+            if (line.starts_with(error)) {
+                EXPECT_LT(std::stod(line.substr(error.size())), stated_error(scene) + 0.5)
+                    << scene << ": " << line;
+                continue;
+            }
+            const bool is_aspect = line.find("made for an aspect ratio of") != std::string::npos;
+            EXPECT_TRUE(is_aspect || !line.starts_with("warning:")) << scene << ": " << line;
+        }
+    }
+
+    static void expect_lit(const ImageFile& image, const std::filesystem::path& scene) {
+        expect_finite_and_lit(image);
+        float largest = 0;
+        for (const auto& [name, values] : image.channels)
+            if (name.starts_with("backscatter."))
+                for (const float value : values) largest = std::max(largest, value);
+        EXPECT_GT(largest, 0) << scene;
+        for (const float alpha : image.channels.at("A")) ASSERT_EQ(alpha, 1) << scene;
+    }
+
+    const std::filesystem::path scenes_ =
+        std::filesystem::path(UWVDB_SOURCE_DIR) / "assets" / "scenes";
+};
+
+}  // namespace uw::test
