@@ -12,6 +12,7 @@
 #include "core/geometry/surface_reflection.h"
 #include "core/light/lamp_factory.h"
 #include "core/light/ray_panels.h"
+#include "core/light/sky_emitter.h"
 #include "core/light/surface_lighting.h"
 #include "core/paths/path_segment.h"
 
@@ -69,6 +70,7 @@ class PointLight {
           lamps_(scene.lamps.size()),
           optics_(scene_, true),
           phases_(*scene_.medium),
+          sky_(scene_),
           surfaces_(scene_) {}
 
     /// Returns the radiance at the ray's origin by lamp, as mean over the bands.
@@ -83,11 +85,29 @@ class PointLight {
             optics_.transmittances(segment.length, point.column, left);
             if (!segment.hit.is_water_surface) add_surface(segment, light);
         }
-        for (std::size_t b = 0; b < optics_.bands(); ++b) add_water(segment, b, left[b], light);
+        const std::vector<OfSky> sky = find_sky(ray.direction);
+        for (std::size_t b = 0; b < optics_.bands(); ++b)
+            add_water(segment, b, left[b], sky, light);
         return light;
     }
 
   private:
+    // What SkyScattering finds.
+    struct OfSky {
+        std::vector<double> phase;
+        double lengthening = 1;
+    };
+
+    // By emitter.
+    std::vector<OfSky> find_sky(const Vector3& direction) const {
+        std::vector<OfSky> sky(emitters_.size());
+        SkyScattering::Workspace workspace;
+        for (std::size_t j = 0; j < sky.size(); ++j)
+            if (sky_.contains(j))
+                sky[j].lengthening = sky_.find(j, direction, sky[j].phase, workspace);
+        return sky;
+    }
+
     static LitScene with_emitters(LitScene scene, const std::vector<Lamp>& emitters) {
         scene.emitters = &emitters;
         return scene;
@@ -111,7 +131,7 @@ class PointLight {
 
     // `left` is the transmittance of the whole segment in this band.
     void add_water(const WaterSegment& segment, std::size_t band, double left,
-                   std::vector<double>& light) const {
+                   std::span<const OfSky> sky, std::vector<double>& light) const {
         WaterPoint point;
         std::vector<double> c(optics_.bands()), column(optics_.constituents());
         std::vector<double> p(scene_.medium->phase_functions.size());
@@ -127,16 +147,23 @@ class PointLight {
             const double weight =
                 (1 - left) / (k_places * c[band] * static_cast<double>(optics_.bands()));
             const Point3 x = segment.ray.at(s);
-            for (const Lamp& lamp : emitters_) {
+            for (std::size_t j = 0; j < emitters_.size(); ++j) {
+                const Lamp& lamp = emitters_[j];
                 const LampPassage passage = lamp.passage(segment.ray);
-                const double radius = passage.radius(s);
+                double radius = passage.radius(s);
                 if (!(radius > 0) || lamp.contains(radius)) continue;
                 const Point3 origin = lamp.origin(x);
                 const double relative = lamp.relative_intensity(x - origin);
                 if (!(relative > 0) || scene_.surfaces->occluded(origin, x)) continue;
                 scene_.field->column(origin, x, column);
-                const double h = passage.half_tangent(s, radius);
-                phases_.eval(std::span(&h, 1), p);
+                if (sky_.contains(j)) {
+                    p = sky[j].phase;
+                    radius *= sky[j].lengthening;
+                    for (double& value : column) value *= sky[j].lengthening;
+                } else {
+                    const double h = passage.half_tangent(s, radius);
+                    phases_.eval(std::span(&h, 1), p);
+                }
                 double beta = 0;
                 for (std::size_t m = 0; m < p.size(); ++m) beta += point.scattering[m][band] * p[m];
                 const double tau = optics_.attenuation().optical_depth(band, radius, column);
@@ -151,6 +178,7 @@ class PointLight {
     std::size_t lamps_;
     WaterOptics optics_;
     PhaseTable phases_;
+    SkyScattering sky_;
     DirectLighting surfaces_;
 };
 
@@ -228,9 +256,8 @@ std::vector<std::string> pointed_lamp_notes(const AssembledScene& scene,
         notes.push_back(fmt::format(
             "the {} lights this scene as {} {}: with {} of them the image changes by about {:.0f} "
             "% (RMS), which no stated error includes; {}: {} renders that",
-            is_sky ? "sky" : "volume '" + desc.name + "'", lamp.count,
-            is_sky ? "directions" : "points", more, 100 * lamp.change,
-            is_sky ? "sky.samples" : "its emission's samples",
+            is_sky ? "sky" : "volume '" + desc.name + "'", lamp.count, is_sky ? "parts" : "points",
+            more, 100 * lamp.change, is_sky ? "sky.samples" : "its emission's samples",
             std::min(k_times_as_many * samples, k_max_points)));
     }
     return notes;

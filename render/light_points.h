@@ -8,11 +8,11 @@
 
 namespace uw {
 
-/// A lamp that represents the light of the sky or of an emissive volume by a number of directions
-/// or points, and the error of that.
+/// A lamp that represents the light of an emissive volume by a number of points, or casts the sky's
+/// shadows by as many parts of it, and the error of that.
 struct PointedLamp {
     std::size_t lamp = 0;   // index of the lamp
-    std::size_t count = 0;  // of directions or points
+    std::size_t count = 0;  // of parts or points
     /// The change of its light in the image with four times as many: RMS over the image, relative
     /// to the mean of all light. It includes direct light and single scattering, but not what the
     /// water's surface mirrors. Still more points may change the image further.

@@ -16,6 +16,7 @@
 #include "core/light/directional_emitter.h"
 #include "core/light/lamp_profile.h"
 #include "core/light/point_emitter.h"
+#include "core/light/sky_emitter.h"
 
 namespace uw {
 
@@ -278,11 +279,13 @@ Lamp make_lamp(const LampDesc& desc, const Sky& sky) {
 void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, int thinning,
                      const Sky& sky, std::vector<Lamp>& emitters) {
     const WaterSurfaceDesc& surface = desc.sun->surface;
-    const std::vector<SkyDirection> directions =
-        sky.directions(std::max(1, desc.sky->samples / thinning), surface.n.value());
+    const auto parts = std::make_shared<const SkyParts>(
+        sky, std::max(1, desc.sky->samples / thinning), surface.n.value());
+    const std::size_t count = parts->parts().size();
     // A lamp without parts has one dark emitter, so that the indices of other lamps stay the same.
-    if (directions.empty()) emitters.push_back(lamp.with_index(index));
-    for (const SkyDirection& part : directions) {
+    if (count == 0) emitters.push_back(lamp.with_index(index));
+    for (std::size_t i = 0; i < count; ++i) {
+        const SkyDirection& part = parts->parts()[i].direction;
         const Vector3 in_air = -(sky.world_from_sky() * part.towards);
         const LampPlacement placement{{}, in_air};
         LampFrame frame{{}, placement.across(), glm::cross(in_air, placement.across())};
@@ -293,8 +296,9 @@ void append_emitters(const LampDesc& desc, const Lamp& lamp, std::size_t index, 
         irradiance *= irradiance_below(surface, in_air);
         emitters.emplace_back(
             lamp.name(),
-            std::make_shared<DirectionalEmitter>(Sunlight::from_air(in_air, surface), patch),
-            irradiance, index, 1.0 / static_cast<double>(directions.size()));
+            std::make_shared<SkyEmitter>(Sunlight::from_air(in_air, surface), patch, parts, i,
+                                         sky.world_from_sky(), irradiance),
+            irradiance, index, 1.0 / static_cast<double>(count));
     }
 }
 

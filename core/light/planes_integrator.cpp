@@ -52,12 +52,16 @@ struct PlanesIntegrator::Workspace {
     std::vector<double> psi;
     std::vector<double> phase;
     std::vector<Spectrum> beta;
+    // Of a part of the sky:
+    std::vector<double> mean_phases;
+    SkyScattering::Workspace sky;
 };
 
 PlanesIntegrator::PlanesIntegrator(const LitScene& scene, const Affine& world_from_camera,
                                    const Slabs& slabs)
     : scene_(scene),
       evenness_(scene),
+      sky_(scene),
       camera_from_world_(world_from_camera.inverse()),
       slabs_(slabs),
       attenuation_(*scene.medium) {
@@ -77,7 +81,7 @@ void PlanesIntegrator::in_scatter_from(const Ray& ray, double begin,
     place_samples(ray, begin, distances, w.samples);
     for (std::size_t j = 0; j < emitters.size(); ++j) {
         throw_if_stopped();
-        light_samples(ray, emitters[j], w);
+        light_samples(ray, j, w);
         const std::size_t lamp = emitters[j].index();
         if (j == 0 || lamp != emitters[j - 1].index())
             evenness_.find(lamp, ray, begin, distances, w.evenness);
@@ -117,7 +121,10 @@ void PlanesIntegrator::place_samples(const Ray& ray, double begin,
     }
 }
 
-void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace& w) const {
+void PlanesIntegrator::light_samples(const Ray& ray, std::size_t emitter, Workspace& w) const {
+    const Lamp& lamp = (*scene_.emitters)[emitter];
+    const bool is_sky = sky_.contains(emitter);
+    const double lengthening = is_sky ? sky_.find(emitter, ray.direction, w.mean_phases, w.sky) : 1;
     const Medium& medium = *scene_.medium;
     w.radiance.assign(w.samples.size(), Spectrum{});
     w.lit.clear();
@@ -135,7 +142,7 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
             lamp.contains(radius) ? 0.0 : lamp.relative_intensity(from_lamp) * lamp.focus(x);
         if (relative <= 0 || scene_.surfaces->occluded(origin, x)) continue;
         w.lit.push_back(i);
-        w.path.push_back(radius + sample.s);
+        w.path.push_back(lengthening * radius + sample.s);
         w.weight.push_back(relative / lamp.spread(radius) * sample.length);
         // Angle between the directions of travel, lamp to X and X to camera; atan2 is accurate near
         // pi.
@@ -147,7 +154,10 @@ void PlanesIntegrator::light_samples(const Ray& ray, const Lamp& lamp, Workspace
     w.phase.resize(w.psi.size());
     w.beta.assign(w.psi.size(), Spectrum{});
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
-        medium.phase_functions[m]->eval(w.psi, w.phase);
+        if (is_sky)
+            std::ranges::fill(w.phase, w.mean_phases[m]);
+        else
+            medium.phase_functions[m]->eval(w.psi, w.phase);
         const Spectrum& scattering = medium.uniform.scattering[m];
         for (std::size_t i = 0; i < w.psi.size(); ++i)
             add_scaled(w.beta[i].first(bands), w.phase[i], scattering.first(bands));

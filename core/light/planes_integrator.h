@@ -7,6 +7,7 @@
 #include "core/light/integrator_kind.h"
 #include "core/light/lamps_in_view.h"
 #include "core/light/medium.h"
+#include "core/light/sky_emitter.h"
 
 namespace uw {
 
@@ -48,11 +49,13 @@ class PlanesIntegrator final : public Integrator {
 
     void place_samples(const Ray& ray, double begin, std::span<const double> distances,
                        std::vector<Sample>& samples) const;
-    /// Radiance that each of w.samples scatters to the ray's origin from the light of `lamp`.
-    void light_samples(const Ray& ray, const Lamp& lamp, Workspace& w) const;
+    /// Radiance that each of w.samples scatters to the ray's origin from the light of
+    /// an emitter.
+    void light_samples(const Ray& ray, std::size_t emitter, Workspace& w) const;
 
     LitScene scene_;
     LampEvenness evenness_;
+    SkyScattering sky_;
     Affine camera_from_world_;
     Slabs slabs_;
     AttenuationTable attenuation_;

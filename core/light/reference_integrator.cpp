@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -32,7 +33,7 @@ LightTransport make_reference(const IntegratorInputs& inputs) {
 constinit const IntegratorKind ReferenceIntegrator::k_kind{.make = make_reference};
 
 ReferenceIntegrator::ReferenceIntegrator(const LitScene& scene, double step)
-    : scene_(scene), evenness_(scene), attenuation_(*scene.medium), step_(step) {}
+    : scene_(scene), evenness_(scene), sky_(scene), attenuation_(*scene.medium), step_(step) {}
 
 void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> distances,
                                      InScatter& result) const {
@@ -47,8 +48,14 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
         attenuation_.uniform.least(static_cast<std::size_t>(attenuation_.band_count));
     const double max_c =
         attenuation_.uniform.greatest(static_cast<std::size_t>(attenuation_.band_count));
+    SkyScattering::Workspace workspace;
     for (std::size_t j = 0; j < emitters.size(); ++j) {
         const LampPassage passage = emitters[j].passage(ray);
+        std::optional<SkyLight> sky;
+        if (sky_.contains(j)) {
+            sky.emplace();
+            sky->lengthening = sky_.find(j, ray.direction, sky->phase, workspace);
+        }
         const double max_distance =
             min_c > 0 ? passage.max_distance(k_extinct_optical_depth / min_c) : k_far;
         const auto scale_at = [&](double s) {
@@ -81,7 +88,8 @@ void ReferenceIntegrator::in_scatter(const Ray& ray, std::span<const double> dis
                     length = std::min(length, *bend - s);
                 length = std::min(length, end - s);
                 depth += length * least;
-                sum += length * even * in_scatter_per_metre(ray, s + 0.5 * length, j);
+                sum += length * even *
+                       in_scatter_per_metre(ray, s + 0.5 * length, j, sky ? &*sky : nullptr);
                 s = end - s > length ? s + length : end;
             }
             result.at(i, emitters[j].index()) += sum;
@@ -100,9 +108,9 @@ std::pair<double, double> ReferenceIntegrator::attenuation_at(const Point3& x) c
     return {least, greatest};
 }
 
-Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
-                                                   std::size_t lamp_index) const {
-    const Lamp& lamp = (*scene_.emitters)[lamp_index];
+Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s, std::size_t emitter,
+                                                   const SkyLight* sky) const {
+    const Lamp& lamp = (*scene_.emitters)[emitter];
     const Medium& medium = *scene_.medium;
     const Point3 x = ray.at(s);
     const Point3 origin = lamp.origin(x);
@@ -121,11 +129,14 @@ Spectrum ReferenceIntegrator::in_scatter_per_metre(const Ray& ray, double s,
     scene_.field->column(origin, x, from_lamp_column);
     scene_.field->column(ray.origin, x, to_camera_column);
     scene_.field->sample(x, concentration);
-    for (std::size_t k = 0; k < constituents; ++k) from_lamp_column[k] += to_camera_column[k];
-    const Spectrum transmittance = attenuation_.transmittance(radius + s, from_lamp_column);
+    const double lengthening = sky ? sky->lengthening : 1;
+    for (std::size_t k = 0; k < constituents; ++k)
+        from_lamp_column[k] = lengthening * from_lamp_column[k] + to_camera_column[k];
+    const Spectrum transmittance =
+        attenuation_.transmittance(lengthening * radius + s, from_lamp_column);
     Spectrum result;
     for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
-        const double p = medium.phase_functions[m]->eval(psi);
+        const double p = sky ? sky->phase[m] : medium.phase_functions[m]->eval(psi);
         Spectrum b = medium.uniform.scattering[m];
         for (std::size_t k = 0; k < constituents; ++k)
             b += concentration[k] * medium.constituents[k].per_unit.scattering[m];
@@ -159,8 +170,18 @@ void check_uniform(const LitScene& scene) {
 /// attenuation is nearly linear.
 class QuadratureIntegrator::RayIntegral {
   public:
-    RayIntegral(const QuadratureIntegrator& owner, const Ray& ray, const Lamp& lamp)
-        : owner_(owner), ray_(ray), lamp_(lamp), passage_(lamp.passage(ray)) {
+    RayIntegral(const QuadratureIntegrator& owner, const Ray& ray, std::size_t emitter)
+        : owner_(owner),
+          ray_(ray),
+          lamp_((*owner.scene_.emitters)[emitter]),
+          passage_(lamp_.passage(ray)) {
+        if (owner.sky_.contains(emitter)) {
+            SkyScattering::Workspace workspace;
+            const double lengthening =
+                owner.sky_.find(emitter, ray.direction, sky_phase_, workspace);
+            passage_.begin_length *= lengthening;
+            passage_.slope *= lengthening;
+        }
         const auto bands = static_cast<std::size_t>(owner.attenuation_.band_count);
         rate_ = std::max(owner.attenuation_.uniform.least(bands), k_min_rate);
         // A ray straight through the lamp has no angle to integrate over, but one that narrowly
@@ -215,7 +236,8 @@ class QuadratureIntegrator::RayIntegral {
         if (relative <= 0 || owner_.scene_.surfaces->occluded(origin, x)) return value;
         const Medium& medium = *owner_.scene_.medium;
         for (std::size_t m = 0; m < medium.phase_functions.size(); ++m) {
-            const double p = medium.phase_functions[m]->eval(psi);
+            const double p =
+                sky_phase_.empty() ? medium.phase_functions[m]->eval(psi) : sky_phase_[m];
             value += medium.uniform.scattering[m] * p;
         }
         value *= per_band(static_cast<std::size_t>(medium.band_count()), [&](std::size_t b) {
@@ -252,12 +274,17 @@ class QuadratureIntegrator::RayIntegral {
     const Ray& ray_;
     const Lamp& lamp_;
     LampPassage passage_;
-    double rate_ = 0;   // of a sun
-    Spectrum scale_{};  // a first estimate of the integral, per band
+    std::vector<double> sky_phase_;  // SkyScattering::find; empty: not of the sky
+    double rate_ = 0;                // of a sun
+    Spectrum scale_{};               // a first estimate of the integral, per band
 };
 
 QuadratureIntegrator::QuadratureIntegrator(const LitScene& scene, double tolerance)
-    : scene_(scene), evenness_(scene), attenuation_(*scene.medium), tolerance_(tolerance) {
+    : scene_(scene),
+      evenness_(scene),
+      sky_(scene),
+      attenuation_(*scene.medium),
+      tolerance_(tolerance) {
     check_uniform(scene);
 }
 
@@ -267,7 +294,7 @@ void QuadratureIntegrator::in_scatter(const Ray& ray, std::span<const double> di
     result.reset(distances.size(), scene_.lamp_count());
     for (std::size_t j = 0; j < emitters.size(); ++j) {
         throw_if_stopped();
-        RayIntegral integral(*this, ray, emitters[j]);
+        RayIntegral integral(*this, ray, j);
         Spectrum sum;
         double begin = 0;
         for (std::size_t i = 0; i < distances.size(); ++i) {
@@ -301,10 +328,14 @@ void UniformWaterLighting::evaluate(std::span<const SurfaceSample* const> sample
             const Point3 origin = lamp.origin(hit.position);
             const Vector3 v = origin - hit.position;
             const double r2 = glm::dot(v, v);
+            const auto* const sky = dynamic_cast<const SkyEmitter*>(&lamp.emitter());
+            const auto towards_light = [&](const Vector3& normal) {
+                return sky ? std::sqrt(r2) * sky->mean_cosine(normal) : glm::dot(normal, v);
+            };
             const double geometry_term = lamp.relative_intensity(-v) * lamp.focus(hit.position) *
-                                         glm::dot(hit.normal, v) /
+                                         towards_light(hit.normal) /
                                          (lamp.spread(std::sqrt(r2)) * std::sqrt(r2));
-            if (geometry_term <= 0 || glm::dot(hit.geometric_normal, v) <= 0) continue;
+            if (geometry_term <= 0 || towards_light(hit.geometric_normal) <= 0) continue;
             double& visibility = light.visibility(i, j);
             if (!lamp.is_part())
                 visibility = scene_.surfaces->occluded(origin, hit.position) ? 0 : 1;

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
 #include "core/light/lamps_in_view.h"
 #include "core/light/medium.h"
+#include "core/light/sky_emitter.h"
 #include "core/light/surface_lighting.h"
 
 namespace uw {
@@ -31,11 +33,19 @@ class ReferenceIntegrator final : public Integrator {
   private:
     /// The least and the greatest attenuation coefficient of the bands [1/m].
     std::pair<double, double> attenuation_at(const Point3& x) const;
-    /// In-scatter per metre at distance `s` of `ray` from lamp `lamp` [W m^-3 sr^-1].
-    Spectrum in_scatter_per_metre(const Ray& ray, double s, std::size_t lamp) const;
+    /// The light of a part of the sky on a ray (SkyScattering::find).
+    struct SkyLight {
+        std::vector<double> phase;
+        double lengthening = 1;
+    };
+    /// In-scatter per metre at distance `s` of `ray` from an emitter [W m^-3 sr^-1]. `sky`: null if
+    /// that is no part of the sky.
+    Spectrum in_scatter_per_metre(const Ray& ray, double s, std::size_t emitter,
+                                  const SkyLight* sky) const;
 
     LitScene scene_;
     LampEvenness evenness_;
+    SkyScattering sky_;
     AttenuationTable attenuation_;
     double step_;
 };
@@ -63,6 +73,7 @@ class QuadratureIntegrator final : public Integrator {
 
     LitScene scene_;
     LampEvenness evenness_;
+    SkyScattering sky_;
     AttenuationTable attenuation_;
     double tolerance_;
 };

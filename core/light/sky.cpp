@@ -17,6 +17,7 @@
 #include "core/geometry/mesh.h"
 #include "core/image/image_file.h"
 #include "core/image/spectral_bands.h"
+#include "core/light/sky_quadrature.h"
 #include "core/light/sun.h"
 
 namespace uw {
@@ -75,94 +76,6 @@ SampledCurve daylight_spectrum(double x, double y) {
     return spectrum;
 }
 
-/// A lattice of directions as a quadrature: rows of equal elevation, columns of equal azimuth, each
-/// with the radiance there.
-struct Sky::Quadrature {
-    struct Row {
-        double cosine;       // of the angle from the zenith
-        double solid_angle;  // of each of its columns [sr]
-
-        double sine() const { return std::sqrt(std::max(0.0, 1 - cosine * cosine)); }
-    };
-    std::vector<Row> rows;      // from the zenith down
-    std::vector<double> edges;  // sines of the angles between rows, from 0 to 1: one more than rows
-    std::vector<double> column_sines, column_cosines;  // of azimuths, counterclockwise from east
-    double column_width = 0;                           // [rad]
-    std::size_t bands = 0;
-    std::vector<double> radiance;  // scaled, row by row, column by column
-
-    Vector3 towards(std::size_t row, std::size_t column) const {
-        const double sine = rows[row].sine();
-        return {sine * column_cosines[column], sine * column_sines[column], rows[row].cosine};
-    }
-    std::span<const double> radiance_at(std::size_t row, std::size_t column) const {
-        return std::span(radiance).subspan((row * column_sines.size() + column) * bands, bands);
-    }
-    void set_columns(std::size_t count, double first) {
-        column_width = 2 * std::numbers::pi / static_cast<double>(count);
-        for (std::size_t i = 0; i < count; ++i) {
-            const double azimuth = first + (static_cast<double>(i) + 0.5) * column_width;
-            column_sines.push_back(std::sin(azimuth));
-            column_cosines.push_back(std::cos(azimuth));
-        }
-    }
-    // Gauss's rule with two nodes in each interval of the cosine is exact for cubics, and the
-    // midpoint rule converges quickly for periodic functions. `first`: the azimuth at which columns
-    // begin, that of the sun, so that they are symmetric about it.
-    static Quadrature even(double first) {
-        constexpr int k_intervals = 64;
-        constexpr std::size_t k_columns = 256;
-        Quadrature quadrature;
-        quadrature.set_columns(k_columns, first);
-        for (int i = k_intervals - 1; i >= 0; --i) {
-            const std::span<const QuadratureNode> nodes = gauss_legendre(2);
-            const double lower = std::min(nodes[0].position, nodes[1].position);
-            for (const double position : {1 - lower, lower})
-                quadrature.rows.push_back(
-                    {(i + position) / k_intervals, 0.5 / k_intervals * quadrature.column_width});
-        }
-        quadrature.set_edges();
-        return quadrature;
-    }
-    void set_edges() {
-        double cosine = 1;
-        edges = {0};
-        for (const Row& row : rows) {
-            cosine -= row.solid_angle / column_width;
-            const double clamped = std::max(0.0, cosine);
-            edges.push_back(std::sqrt(1 - clamped * clamped));
-        }
-    }
-    /// Evaluates the sky everywhere.
-    template <class Radiance>
-    void fill(std::size_t band_count, const Radiance& of) {
-        bands = band_count;
-        radiance.clear();
-        for (std::size_t row = 0; row < rows.size(); ++row)
-            for (std::size_t column = 0; column < column_sines.size(); ++column) {
-                const Spectrum at = of(towards(row, column));
-                radiance.insert(radiance.end(), at.begin(),
-                                at.begin() + static_cast<std::ptrdiff_t>(bands));
-            }
-    }
-    /// int f cos theta dOmega of a function of row and column.
-    template <class Function>
-    double irradiance(const Function& function) const {
-        double sum = 0;
-        for (std::size_t row = 0; row < rows.size(); ++row) {
-            double of_row = 0;
-            for (std::size_t column = 0; column < column_sines.size(); ++column)
-                of_row += function(row, column);
-            sum += of_row * rows[row].cosine * rows[row].solid_angle;
-        }
-        return sum;
-    }
-    double irradiance_in(std::size_t band) const {
-        return irradiance(
-            [&](std::size_t row, std::size_t column) { return radiance_at(row, column)[band]; });
-    }
-};
-
 /// The sky's radiance up to a factor per band.
 class Sky::Distribution {
   public:
@@ -179,8 +92,8 @@ class Sky::Distribution {
     virtual std::optional<double> luminance(const Vector3& /*towards*/) const { return {}; }
     /// A quadrature of the whole sky with its radiance; `sun`: the azimuth of the sun,
     /// counterclockwise from east.
-    virtual Sky::Quadrature quadrature(std::size_t bands, double sun) const {
-        Quadrature result = Quadrature::even(sun);
+    virtual SkyQuadrature quadrature(std::size_t bands, double sun) const {
+        SkyQuadrature result = SkyQuadrature::even(sun);
         result.fill(bands, [&](const Vector3& towards) { return radiance(towards); });
         return result;
     }
@@ -389,11 +302,11 @@ class PanoramaSky : public Sky::Distribution {
 
     /// A quadrature over its pixels, or squares of them, so that a sun of a single pixel is not
     /// missed.
-    Sky::Quadrature quadrature(std::size_t bands, double /*sun*/) const override {
+    SkyQuadrature quadrature(std::size_t bands, double /*sun*/) const override {
         const int square = square_of_pixels();
         const int columns = pixels_.width() / square;
         const double pixel = 2 * std::numbers::pi / pixels_.width();
-        Sky::Quadrature result;
+        SkyQuadrature result;
         result.bands = bands;
         // The left edge is the azimuth -180 + rotate; the columns of a quadrature go the other way.
         result.set_columns(static_cast<std::size_t>(columns), -0.5 * std::numbers::pi - rotate_);
@@ -536,7 +449,7 @@ Sky::Sky(const SkyDesc& desc, const Vector3& up, std::span<const double> bands_n
     const std::optional<PerBand> wanted = wanted_irradiance(desc, bands_nm);
     if (desc.sun) sun_ = sun_in_sky(desc, world_from_sky_);
     distribution_ = make_distribution(desc, sun_, bands_nm);
-    Quadrature quadrature =
+    SkyQuadrature quadrature =
         distribution_->quadrature(bands_, sun_ ? std::atan2(sun_->y, sun_->x) : 0);
     double whole = 1;
     if (desc.lux && !wanted)
@@ -556,7 +469,7 @@ Sky::Sky(const SkyDesc& desc, const Vector3& up, std::span<const double> bands_n
     });
     for (std::size_t i = 0; i < quadrature.radiance.size(); ++i)
         quadrature.radiance[i] *= scale_[i % bands_];
-    quadrature_ = std::make_shared<const Quadrature>(std::move(quadrature));
+    quadrature_ = std::make_shared<const SkyQuadrature>(std::move(quadrature));
 }
 
 Spectrum Sky::radiance(const Vector3& towards) const {
@@ -566,160 +479,6 @@ Spectrum Sky::radiance(const Vector3& towards) const {
 
 Spectrum Sky::irradiance() const {
     return per_band(bands_, [&](std::size_t band) { return quadrature_->irradiance_in(band); });
-}
-
-namespace {
-
-/// A part of the sky: some neighbouring rows and columns of the quadrature.
-struct SkyPart {
-    std::size_t row, row_end, column, column_end;
-};
-
-/// Sums of a table of values over any rectangle of it.
-class RectangleSums {
-  public:
-    RectangleSums(std::size_t rows, std::size_t columns, const std::vector<double>& values)
-        : stride_(columns + 1), sums_((rows + 1) * stride_, 0.0) {
-        for (std::size_t row = 0; row < rows; ++row) {
-            double of_row = 0;
-            for (std::size_t column = 0; column < columns; ++column) {
-                of_row += values[row * columns + column];
-                sums_[(row + 1) * stride_ + column + 1] =
-                    sums_[row * stride_ + column + 1] + of_row;
-            }
-        }
-    }
-    double of(const SkyPart& part) const {
-        return at(part.row_end, part.column_end) - at(part.row, part.column_end) -
-               at(part.row_end, part.column) + at(part.row, part.column);
-    }
-
-  private:
-    double at(std::size_t row, std::size_t column) const { return sums_[row * stride_ + column]; }
-
-    std::size_t stride_;
-    std::vector<double> sums_;
-};
-
-/// Halves a part again and again, across its longer side on the disc of the directions' sines,
-/// until there are `count` of about equal weight.
-class SkyDivision {
-  public:
-    SkyDivision(const RectangleSums& weights, std::span<const double> edges, double column_width)
-        : weights_(weights), edges_(edges), column_width_(column_width) {}
-
-    void divide(const SkyPart& part, int count, std::vector<SkyPart>& parts) const {
-        const bool is_single = part.row_end - part.row == 1 && part.column_end - part.column == 1;
-        if (count == 1 || is_single) {
-            parts.push_back(part);
-            return;
-        }
-        const int first_count = count / 2;
-        const auto [first, second] = halved(part, static_cast<double>(first_count) / count);
-        divide(first, first_count, parts);
-        divide(second, count - first_count, parts);
-    }
-
-  private:
-    std::pair<SkyPart, SkyPart> halved(const SkyPart& part, double fraction) const {
-        const double inner = edges_[part.row], outer = edges_[part.row_end];
-        const double along = 0.5 * (inner + outer) * column_width_ *
-                             static_cast<double>(part.column_end - part.column);
-        const bool is_wide = part.column_end - part.column > 1 &&
-                             (along > outer - inner || part.row_end - part.row == 1);
-        SkyPart first = part, second = part;
-        std::size_t& end = is_wide ? first.column_end : first.row_end;
-        const std::size_t begin = is_wide ? part.column : part.row;
-        const std::size_t last = end;
-        const double wanted = fraction * weights_.of(part);
-        // The boundary at which the weight of the first half is nearest to the one wanted.
-        std::size_t best = begin + 1;
-        double least = -1;
-        for (std::size_t place = begin + 1; place < last; ++place) {
-            end = place;
-            const double off = std::abs(weights_.of(first) - wanted);
-            if (least < 0 || off < least) {
-                least = off;
-                best = place;
-            }
-        }
-        end = best;
-        (is_wide ? second.column : second.row) = best;
-        return {first, second};
-    }
-
-    const RectangleSums& weights_;
-    std::span<const double> edges_;
-    double column_width_;
-};
-
-}  // namespace
-
-std::vector<SkyDirection> Sky::directions(int count, double water_index) const {
-    const Quadrature& q = *quadrature_;
-    const std::size_t columns = q.column_sines.size();
-    // The plane irradiance below the surface, by which each node is normalised in each band.
-    Spectrum below;
-    std::vector<double> row_transmitted;  // T cos theta dOmega
-    std::vector<double> row_cosines;      // in the water
-    for (const Quadrature::Row& row : q.rows) {
-        row_transmitted.push_back(transmittance_into_water(row.cosine, water_index) * row.cosine *
-                                  row.solid_angle);
-        row_cosines.push_back(
-            std::sqrt(1 - (1 - row.cosine * row.cosine) / (water_index * water_index)));
-    }
-    for (std::size_t row = 0; row < q.rows.size(); ++row)
-        for (std::size_t column = 0; column < columns; ++column)
-            add_scaled(below.first(bands_), row_transmitted[row], q.radiance_at(row, column));
-    std::vector<double> weights;
-    for (std::size_t row = 0; row < q.rows.size(); ++row)
-        for (std::size_t column = 0; column < columns; ++column) {
-            const std::span<const double> radiance = q.radiance_at(row, column);
-            double weight = 0;
-            for (std::size_t band = 0; band < bands_; ++band)
-                if (below[band] > 0) weight += radiance[band] / below[band];
-            weights.push_back(weight * row_transmitted[row]);
-        }
-    const RectangleSums sums(q.rows.size(), columns, weights);
-    std::vector<SkyPart> parts;
-    SkyDivision(sums, q.edges, q.column_width).divide({0, q.rows.size(), 0, columns}, count, parts);
-
-    std::vector<SkyDirection> directions;
-    for (const SkyPart& part : parts) {
-        SkyDirection direction;
-        Spectrum irradiance;
-        double weight = 0, scalar = 0, east = 0, north = 0;
-        for (std::size_t row = part.row; row < part.row_end; ++row)
-            for (std::size_t column = part.column; column < part.column_end; ++column) {
-                direction.solid_angle += q.rows[row].solid_angle;
-                add_scaled(irradiance.first(bands_), row_transmitted[row],
-                           q.radiance_at(row, column));
-                const double node_weight = weights[row * columns + column];
-                const Vector3 towards = q.towards(row, column);
-                weight += node_weight;
-                scalar += node_weight / row_cosines[row];
-                east += node_weight * towards.x;
-                north += node_weight * towards.y;
-            }
-        if (!(weight > 0)) continue;
-        // Clamped, since rounding must not carry it beyond the angles that light can have in water.
-        const double steepest = 1, flattest = std::sqrt(1 - 1 / (water_index * water_index));
-        const double in_water = std::clamp(weight / scalar, flattest, steepest);
-        const double sine =
-            std::min(1.0, water_index * std::sqrt(std::max(0.0, 1 - in_water * in_water)));
-        const double level = std::hypot(east, north);
-        // Light that is symmetric about the zenith has no azimuth: a direction from above
-        // represents it.
-        const bool has_side = level > 1e-9 * weight;
-        direction.towards = has_side ? Vector3{sine * east / level, sine * north / level,
-                                               std::sqrt(std::max(0.0, 1 - sine * sine))}
-                                     : Vector3{0, 0, 1};
-        const double cosine = direction.towards.z;
-        direction.radiance = irradiance / (transmittance_into_water(cosine, water_index) * cosine *
-                                           direction.solid_angle);
-        directions.push_back(direction);
-    }
-    return directions;
 }
 
 }  // namespace uw

@@ -12,6 +12,8 @@
 
 namespace uw {
 
+struct SkyQuadrature;
+
 /// The relative spectral power per nm of daylight of the chromaticity (x, y), CIE 1931: S = S0 + M1
 /// S1 + M2 S2 with the CIE's components, 300 to 830 nm, and the factors M1 and M2 of CIE 15 (Judd,
 /// MacAdam and Wyszecki 1964). Far from any daylight it may be negative.
@@ -90,15 +92,17 @@ class Sky {
     /// An index of 1 gives both in the air.
     std::vector<SkyDirection> directions(int count, double water_index) const;
 
+    /// The lattice by which its integrals are taken, with its radiance there.
+    const std::shared_ptr<const SkyQuadrature>& quadrature() const { return quadrature_; }
+
     class Distribution;
-    struct Quadrature;
 
   private:
     Matrix3 world_from_sky_{1.0};
     std::optional<Vector3> sun_;
     std::size_t bands_ = 0;
     std::shared_ptr<const Distribution> distribution_;
-    std::shared_ptr<const Quadrature> quadrature_;
+    std::shared_ptr<const SkyQuadrature> quadrature_;
     Spectrum scale_;
 };
 

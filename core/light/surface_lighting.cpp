@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/numerics.h"
 #include "core/base/random.h"
+#include "core/light/sky_emitter.h"
 
 namespace uw {
 
@@ -234,21 +235,26 @@ struct Facing {
         positions.clear();
         radii.clear();
         geometry_terms.clear();
+        const auto* const sky = dynamic_cast<const SkyEmitter*>(&lamp.emitter());
         for (std::size_t i = 0; i < all.size(); ++i) {
             if (!wanted.empty() && wanted[i] == 0) continue;
             const SurfaceHit& hit = all[i]->hit;
             const Vector3 to_lamp = lamp.origin(hit.position) - hit.position;
             // The geometric normal decides what a lamp can illuminate; the shading normal only
             // affects shading.
-            const double towards = glm::dot(hit.normal, to_lamp);
-            if (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
+            const auto towards_light = [&](const Vector3& normal) {
+                return sky ? sky->mean_cosine(normal) : glm::dot(normal, to_lamp);
+            };
+            const double towards = towards_light(hit.normal);
+            if (towards <= 0 || towards_light(hit.geometric_normal) <= 0) continue;
             const double relative = lamp.relative_intensity(-to_lamp) * lamp.focus(hit.position);
             if (relative <= 0) continue;
             const double radius = glm::length(to_lamp);
             samples.push_back(i);
             positions.push_back(hit.position);
             radii.push_back(radius);
-            geometry_terms.push_back(relative * towards / (lamp.spread(radius) * radius));
+            geometry_terms.push_back(sky ? towards
+                                         : relative * towards / (lamp.spread(radius) * radius));
         }
         hidden.resize(samples.size());
     }

@@ -54,6 +54,11 @@ void ScatterNodes::evaluate_phases(const PhaseTable& table, std::size_t phases) 
     table.eval(half_tangent, phase);
 }
 
+void ScatterNodes::set_phases(std::span<const double> values) {
+    phase.clear();
+    for (const double value : values) phase.insert(phase.end(), size(), value);
+}
+
 ScatterSum::ScatterSum(const Medium& medium)
     : attenuation_(medium), uniform_(medium.uniform.scattering) {
     for (std::size_t k = 0; k < medium.constituents.size(); ++k) {
@@ -248,6 +253,9 @@ struct VolumeIntegrator::Workspace {
     std::vector<Spectrum> radiance;
     std::vector<Spectrum> evenness;  // of the current lamp, up to each distance from the one before
     ScatterNodes nodes;
+    // Of a part of the sky:
+    std::vector<double> mean_phases;
+    SkyScattering::Workspace sky;
 };
 
 VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
@@ -256,6 +264,7 @@ VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
                                    const Part& part)
     : scene_(scene),
       evenness_(scene),
+      sky_(scene),
       tolerance_(tolerance),
       fineness_(fineness),
       deep_shadows_(std::move(deep_shadows)),
@@ -337,7 +346,11 @@ void VolumeIntegrator::visit_nodes(const Ray& ray, std::span<const double> dista
 void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double begin,
                                   std::span<const double> distances, Workspace& w) const {
     const Lamp& lamp = (*scene_.emitters)[emitter];
-    const LampPassage passage = lamp.passage(ray);
+    LampPassage passage = lamp.passage(ray);
+    const bool is_sky = sky_.contains(emitter);
+    const double lengthening = is_sky ? sky_.find(emitter, ray.direction, w.mean_phases, w.sky) : 1;
+    passage.begin_length *= lengthening;
+    passage.slope *= lengthening;
     double max_distance = distances.back();
     if (min_attenuation_ > 0)
         max_distance = std::min(
@@ -353,8 +366,13 @@ void VolumeIntegrator::find_nodes(const Ray& ray, std::size_t emitter, double be
                                static_cast<std::size_t>(w.profile.constituent_count));
     deep_shadows_[emitter]->columns(w.nodes.position, w.nodes.lamp_column);
     refine_columns(emitter, w.nodes, w.profile.constituent_count);
+    if (is_sky)
+        for (double& column : w.nodes.lamp_column) column *= lengthening;
     w.nodes.look_up(w.profile);
-    w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
+    if (is_sky)
+        w.nodes.set_phases(w.mean_phases);
+    else
+        w.nodes.evaluate_phases(phases_, scene_.medium->phase_functions.size());
 }
 
 // On a ray towards the lamp, all of its light has nearly the same path, so that interpolation

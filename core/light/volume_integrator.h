@@ -10,6 +10,7 @@
 #include "core/light/lamps_in_view.h"
 #include "core/light/medium.h"
 #include "core/light/ray_panels.h"
+#include "core/light/sky_emitter.h"
 
 namespace uw {
 
@@ -35,6 +36,8 @@ struct ScatterNodes {
     void look_up(const ConcentrationProfile& profile);
     /// Fills phase from half_tangent; `phases` is the number of phase functions in the table.
     void evaluate_phases(const PhaseTable& table, std::size_t phases);
+    /// Fills it with values that hold at all nodes, by phase function.
+    void set_phases(std::span<const double> values);
 };
 
 /// Coefficients of a medium, laid out for summation over nodes.
@@ -134,6 +137,7 @@ class VolumeIntegrator final : public Integrator {
 
     LitScene scene_;
     LampEvenness evenness_;
+    SkyScattering sky_;
     DepthTolerance tolerance_;
     Fineness fineness_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;

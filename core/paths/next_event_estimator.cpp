@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/geometry/surface_reflection.h"
 #include "core/light/integrator.h"
@@ -17,6 +18,26 @@ constexpr double k_even_depth = 1e-6;
 // The scattering that a field of unknown profile may add, for choosing a phase function, relative
 // to the known scattering.
 constexpr double k_field_fraction = 0.25;
+
+// Where a segment leads into Snell's window or at most so far beside it [rad], a direction of the
+// sky is sampled with this probability by the phase functions, whose forward peak may be much
+// narrower than a part of the sky.
+constexpr double k_beside_window = 0.2, k_phase_probability = 0.5;
+// A part of the sky of which only the edge lights a surface counts as if it stood this high above
+// it, relative to where its direction would stand if it were as high as the edge.
+constexpr double k_edge_of_sky = 0.25;
+
+// The cosine, to a surface's normal, with which a part of the sky is expected to light it.
+// `cosine`: that of the part's direction. 0 only if all of the part stands below the surface's
+// horizon.
+double expected_cosine(const SkyEmitter& sky, double cosine) {
+    const double half_angle = sky.part().half_angle, of_half = std::cos(half_angle);
+    const double edge = cosine < of_half
+                            ? cosine * of_half + std::sqrt(std::max(0.0, 1 - cosine * cosine)) *
+                                                     std::sin(half_angle)
+                            : 1;
+    return std::max({0.0, cosine, k_edge_of_sky * edge});
+}
 
 }  // namespace
 
@@ -39,6 +60,7 @@ double ParallelLightInterval::pdf(double s) const {
 }
 
 void InScatterSampler::prepare(const WaterOptics& optics, const ScatteringTables& tables,
+                               std::span<const SkyEmitter* const> skies,
                                const WaterSegment& segment, const PathState& state) {
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
     const std::size_t phases = tables.phase_count();
@@ -83,6 +105,8 @@ void InScatterSampler::prepare(const WaterOptics& optics, const ScatteringTables
         if (!(lit.length() > 0)) continue;
         LampPassage passage = lamps[j].passage(segment.ray);
         if (passage.parallel) {
+            if (!skies.empty() && skies[j])  // about the mean over the part
+                passage.tangent = std::hypot(passage.tangent, 0.5 * skies[j]->part().half_angle);
             Candidate candidate = parallel_candidate(optics, tables, segment, j, passage, lit);
             const double weight = candidate.mass * candidate.interval.effective_length() *
                                   arriving(j, lit.begin + passage.radius(lit.begin));
@@ -156,6 +180,7 @@ InScatterSampler::Candidate InScatterSampler::parallel_candidate(
         if (attenuation.uniform[b] > 0)
             min_attenuation = std::min(min_attenuation, attenuation.uniform[b]);
     if (min_attenuation < k_far) {
+        candidate.attenuation = min_attenuation;
         candidate.interval = {passage, lit, min_attenuation};
         return candidate;
     }
@@ -165,17 +190,66 @@ InScatterSampler::Candidate InScatterSampler::parallel_candidate(
     return candidate;
 }
 
-std::optional<ScatterPlace> InScatterSampler::sample(const ScatteringTables& tables, double length,
-                                                     double u_lamp, double u_phase,
-                                                     double u_angle) {
+std::optional<ScatterPlace> InScatterSampler::sample(const ScatteringTables& tables,
+                                                     std::span<const SkyEmitter* const> skies,
+                                                     const WaterSegment& segment, double u_lamp,
+                                                     double u_phase, double u_angle,
+                                                     PathRandom& random) {
     if (candidates_.empty()) return std::nullopt;
     const Choice chosen = uw::choose(cumulative_, u_lamp);
     const Candidate& candidate = candidates_[chosen.index];
-    std::optional<ScatterPlace> place =
-        candidate.parallel ? sample_parallel(candidate, u_angle)
-                           : sample_around(tables, candidate, length, u_phase, u_angle);
+    std::optional<ScatterPlace> place;
+    if (!candidate.parallel)
+        place = sample_around(tables, candidate, segment.length, u_phase, u_angle);
+    else if (!skies.empty() && skies[candidate.lamp])
+        place = sample_sky(tables, *skies[candidate.lamp], candidate, segment.ray, u_phase, u_angle,
+                           random);
+    else
+        place = sample_parallel(candidate, u_angle);
     if (place) place->pdf *= chosen.probability;
     return place;
+}
+
+std::optional<ScatterPlace> InScatterSampler::sample_sky(const ScatteringTables& tables,
+                                                         const SkyEmitter& sky,
+                                                         const Candidate& candidate, const Ray& ray,
+                                                         double u_phase, double u_distance,
+                                                         PathRandom& random) const {
+    const double u = random.next(), v = random.next();
+    const WaterSurfaceDesc& surface = sky.sunlight()->surface;
+    const double window = std::sqrt(1 - 1 / (*surface.n * *surface.n));  // cosine of its half angle
+    const bool is_ahead =
+        glm::dot(ray.direction, surface.normal) > std::cos(std::acos(window) + k_beside_window);
+    double total = 0;
+    for (const double weight : phase_weights_) total += weight;
+    const bool by_phase = is_ahead && u_phase < k_phase_probability;
+    Vector3 towards;
+    if (by_phase) {
+        double rest = u_phase / k_phase_probability * total;
+        std::size_t m = 0;
+        while (m + 1 < phase_weights_.size() && rest >= phase_weights_[m])
+            rest -= phase_weights_[m++];
+        towards = direction_around(ray.direction, tables.directions[m].sample(u), v);
+        if (!(glm::dot(towards, surface.normal) > window)) return std::nullopt;
+    } else {
+        towards = sky.sample(u, v);
+    }
+    const LampPassage passage = sky.passage_of(ray, towards);
+    // The balance heuristic for a sky that is sampled evenly, as it is about.
+    const double evenly = 1 / (2 * std::numbers::pi * (1 - window));
+    double mixture = evenly;
+    if (is_ahead) {
+        double pdf = 0;
+        for (std::size_t m = 0; m < phase_weights_.size(); ++m)
+            pdf += phase_weights_[m] / total * tables.directions[m].pdf(passage.tangent);
+        mixture += k_phase_probability * (pdf * per_solid_angle(passage.tangent) - evenly);
+    }
+    const double pdf = by_phase ? mixture : mixture * sky.pdf(towards) / evenly;
+    if (!(pdf > 0)) return std::nullopt;
+    const ParallelLightInterval interval = candidate.interval.with(passage, candidate.attenuation);
+    const double s = interval.sample(u_distance);
+    return ScatterPlace{candidate.lamp,        s,       passage.tangent, passage.radius(s),
+                        pdf * interval.pdf(s), towards, by_phase};
 }
 
 ScatterPlace InScatterSampler::sample_parallel(const Candidate& candidate, double u) {
@@ -221,6 +295,7 @@ NextEventEstimator::NextEventEstimator(const WaterOptics& optics, const Scatteri
                                        std::vector<std::size_t> emitters)
     : optics_(optics),
       tables_(tables),
+      skies_(sky_emitters(*optics.scene().emitters)),
       evenness_(optics.scene()),
       deep_shadows_(std::move(deep_shadows)),
       emitters_(std::move(emitters)) {}
@@ -234,27 +309,45 @@ void NextEventEstimator::column_to_lamp(std::size_t lamp, const Point3& x,
         deep_shadows_[lamp]->columns(std::span(&x, 1), column);
 }
 
+void NextEventEstimator::column_to_sky(std::size_t lamp, const Point3& x, const Point3& origin,
+                                       std::span<double> column) const {
+    if (column.empty()) return;
+    if (deep_shadows_.empty()) {
+        optics_.scene().field->column(origin, x, column);
+        return;
+    }
+    deep_shadows_[lamp]->columns(std::span(&x, 1), column);
+    const double of_lamp = distance((*optics_.scene().emitters)[lamp].origin(x), x);
+    for (double& value : column) value *= of_lamp > 0 ? distance(origin, x) / of_lamp : 1;
+}
+
 void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const PathState& state,
                                              PathRandom& random, ContributionSink& sink,
                                              NextEventScratch& w) const {
     const double u_lamp = random.next(), u_phase = random.next(), u_angle = random.next();
     const std::size_t phases = tables_.phase_count();
     if (phases == 0) return;
-    w.in_scatter.prepare(optics_, tables_, segment, state);
+    w.in_scatter.prepare(optics_, tables_, skies_, segment, state);
     const std::optional<ScatterPlace> place =
-        w.in_scatter.sample(tables_, segment.length, u_lamp, u_phase, u_angle);
+        w.in_scatter.sample(tables_, skies_, segment, u_lamp, u_phase, u_angle, random);
     if (!place) return;
     const double s = place->s;
 
     const Lamp& lamp = (*optics_.scene().emitters)[place->lamp];
+    const SkyEmitter* const sky = skies_.empty() ? nullptr : skies_[place->lamp];
     const Point3 x = segment.ray.at(s);
-    const Point3 origin = lamp.origin(x);
-    const double relative = lamp.relative_intensity(x - origin) * lamp.focus(x);
+    const Point3 origin = sky ? x + place->radius * place->towards_sky : lamp.origin(x);
+    const double relative = sky ? 1 : lamp.relative_intensity(x - origin) * lamp.focus(x);
     if (!(relative > 0) || optics_.scene().surfaces->occluded(origin, x)) return;
     optics_.look_up(segment, s, w.point);
     optics_.find_scattering(w.point);
     w.column.resize(optics_.constituents());
-    column_to_lamp(place->lamp, x, w.column);
+    if (place->is_any_sky)
+        optics_.scene().field->column(origin, x, w.column);
+    else if (sky)
+        column_to_sky(place->lamp, x, origin, w.column);
+    else
+        column_to_lamp(place->lamp, x, w.column);
     add(w.column, w.point.column);
     w.p.resize(phases);
     tables_.phase(place->half_tangent, w.p);
@@ -263,10 +356,14 @@ void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const 
     optics_.transmittances(s + place->radius, w.column, w.radiance);
     const Spectrum even = evenness_.of(lamp.index(), segment.ray, {0, segment.length});
     const double factor = relative / place->pdf;
+    if (sky)
+        w.sky_radiance = place->is_any_sky ? sky->parts().radiance(sky->in_sky(place->towards_sky))
+                                           : sky->radiance(place->towards_sky, lamp);
+    const Spectrum& intensity = sky ? w.sky_radiance : lamp.axis_intensity();
     for (std::size_t b = 0; b < bands; ++b) {
         double beta = 0;
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];
-        radiance[b] *= factor * even[b] * beta * lamp.axis_intensity()[b] * state.throughput[b];
+        radiance[b] *= factor * even[b] * beta * intensity[b] * state.throughput[b];
     }
     PathContribution contribution = state.contribution(lamp.index(), radiance);
     if (contribution.scatterings + contribution.reflections == 0)
@@ -300,14 +397,16 @@ void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
     w.cumulative.clear();
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
+        const SkyEmitter* const sky = skies_.empty() ? nullptr : skies_[j];
         const Vector3 to_lamp = lamps[j].origin(hit.position) - hit.position;
         const double towards = glm::dot(hit.normal, to_lamp);
-        if (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0) continue;
+        if (!sky && (towards <= 0 || glm::dot(hit.geometric_normal, to_lamp) <= 0)) continue;
         const double relative =
             lamps[j].relative_intensity(-to_lamp) * lamps[j].focus(hit.position);
         if (!(relative > 0)) continue;
         const double radius = glm::length(to_lamp);
-        const double geometry = relative * towards / (lamps[j].spread(radius) * radius);
+        const double geometry = sky ? expected_cosine(*sky, towards / radius)
+                                    : relative * towards / (lamps[j].spread(radius) * radius);
         const double weight =
             lamps.size() == 1 ? 1
                               : geometry * optics_.attenuated_sum(
@@ -319,16 +418,32 @@ void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
     }
     if (w.direct.empty()) return;
     const auto [chosen, probability] = choose(w.cumulative, u);
-    const NextEventScratch::DirectCandidate& candidate = w.direct[chosen];
+    NextEventScratch::DirectCandidate candidate = w.direct[chosen];
     const Lamp& lamp = lamps[candidate.lamp];
-    const Point3 origin = lamp.origin(hit.position);
+    Point3 origin = lamp.origin(hit.position);
+    const SkyEmitter* const sky = skies_.empty() ? nullptr : skies_[candidate.lamp];
+    if (sky) {
+        const double first = random.next(), second = random.next();
+        const Vector3 towards = sky->sample(first, second);
+        const double pdf = sky->pdf(towards);
+        candidate.geometry = glm::dot(hit.normal, towards);
+        if (!(pdf > 0) || candidate.geometry <= 0 || glm::dot(hit.geometric_normal, towards) <= 0)
+            return;
+        candidate.radius = sky->length_to(hit.position, towards);
+        origin = hit.position + candidate.radius * towards;
+        w.sky_radiance = sky->radiance(towards, lamp) / pdf;
+    }
+    const Spectrum& intensity = sky ? w.sky_radiance : lamp.axis_intensity();
     if (optics_.scene().surfaces->occluded(origin, hit.position)) return;
     w.column.resize(optics_.constituents());
-    column_to_lamp(candidate.lamp, hit.position, w.column);
+    if (sky)
+        column_to_sky(candidate.lamp, hit.position, origin, w.column);
+    else
+        column_to_lamp(candidate.lamp, hit.position, w.column);
     reflection.brdf(origin, w.brdf);
     optics_.transmittances(candidate.radius, w.column, w.radiance);
     for (std::size_t b = 0; b < bands; ++b)
-        radiance[b] *= candidate.geometry / probability * lamp.axis_intensity()[b] * w.brdf[b] *
+        radiance[b] *= candidate.geometry / probability * intensity[b] * w.brdf[b] *
                        transmittance[b] * state.throughput[b];
     PathContribution contribution = state.contribution(lamp.index(), radiance);
     ++contribution.reflections;

@@ -12,6 +12,7 @@
 #include "core/light/integrator.h"
 #include "core/light/lamps_in_view.h"
 #include "core/light/ray_panels.h"
+#include "core/light/sky_emitter.h"
 #include "core/paths/path_segment.h"
 #include "core/paths/scattering_tables.h"
 
@@ -29,6 +30,10 @@ class ParallelLightInterval {
 
     /// int e^(-rate s) ds over the interval [m].
     double effective_length() const;
+    /// The same interval for light of another direction.
+    ParallelLightInterval with(const LampPassage& passage, double attenuation) const {
+        return {passage, lit_, attenuation};
+    }
     /// Samples a distance by a random number in [0, 1).
     double sample(double u) const;
     /// The pdf of the sampled distance [1/m].
@@ -46,6 +51,10 @@ struct ScatterPlace {
     double half_tangent = 0;  // of the scattering angle
     double radius = 0;        // from the light's origin
     double pdf = 0;           // of the point [1/m], times Lamp::spread
+    /// Of light of the sky, the direction towards it; the pdf is then that of both [1/(m sr)], over
+    /// the weight of multiple importance sampling.
+    Vector3 towards_sky{0};
+    bool is_any_sky = false;  // the direction may be one of any part of the sky, not of the lamp's
 };
 
 /// Chooses a lamp and a point on a segment for next-event estimation of in-scattered light:
@@ -54,13 +63,18 @@ struct ScatterPlace {
 class InScatterSampler {
   public:
     /// Weights the lamps and phase functions for a segment of a path.
+    /// `skies`: as sky_emitters says.
     void prepare(const WaterOptics& optics, const ScatteringTables& tables,
-                 const WaterSegment& segment, const PathState& state);
+                 std::span<const SkyEmitter* const> skies, const WaterSegment& segment,
+                 const PathState& state);
 
-    /// Samples by three random numbers in [0, 1) on the segment of this `length`; none where
-    /// nothing is lit. May be called once after each `prepare`, with the same tables.
-    std::optional<ScatterPlace> sample(const ScatteringTables& tables, double length, double u_lamp,
-                                       double u_phase, double u_angle);
+    /// Samples by three random numbers in [0, 1) on the segment; none where nothing is lit. Light
+    /// of the sky takes two more of `random`. May be called once after each `prepare`, with the
+    /// same arguments.
+    std::optional<ScatterPlace> sample(const ScatteringTables& tables,
+                                       std::span<const SkyEmitter* const> skies,
+                                       const WaterSegment& segment, double u_lamp, double u_phase,
+                                       double u_angle, PathRandom& random);
 
   private:
     // A lamp that may be chosen.
@@ -79,6 +93,7 @@ class InScatterSampler {
         // For a sun; its mass is that of the weighted phase functions at its one angle:
         bool parallel = false;
         ParallelLightInterval interval;
+        double attenuation = 0;  // that of the interval [1/m]
         LampPassage passage;
     };
     // HalfTangentDensity::mass_to at both ends of a part.
@@ -89,6 +104,14 @@ class InScatterSampler {
     Candidate parallel_candidate(const WaterOptics& optics, const ScatteringTables& tables,
                                  const WaterSegment& segment, std::size_t lamp,
                                  const LampPassage& passage, const Interval& lit);
+    // Samples a direction of the sky by multiple importance sampling (Veach 1997): a direction of
+    // the lamp's part of the sky or, where the segment leads towards Snell's window, one of all of
+    // it by the phase functions. The weights depend on the direction alone; so each of the two
+    // finds its fraction of all light, whichever part the path sees.
+    std::optional<ScatterPlace> sample_sky(const ScatteringTables& tables, const SkyEmitter& sky,
+                                           const Candidate& candidate, const Ray& ray,
+                                           double u_phase, double u_distance,
+                                           PathRandom& random) const;
     static ScatterPlace sample_parallel(const Candidate& candidate, double u);
     std::optional<ScatterPlace> sample_around(const ScatteringTables& tables,
                                               const Candidate& candidate, double length,
@@ -105,7 +128,7 @@ struct NextEventScratch {
     /// A lamp that illuminates the surface.
     struct DirectCandidate {
         std::size_t lamp = 0;
-        double radius = 0, geometry = 0;
+        double radius = 0, geometry = 0;  // of the sky, by the direction of its part
     };
 
     InScatterSampler in_scatter;
@@ -113,7 +136,7 @@ struct NextEventScratch {
     std::vector<double> cumulative;
     std::vector<double> column, p;
     WaterPoint point;
-    Spectrum radiance, brdf;
+    Spectrum radiance, brdf, sky_radiance;
 };
 
 /// Next-event estimation: estimates the light of lamps that arrives along a segment after a single
@@ -136,13 +159,14 @@ class NextEventEstimator {
     /// by equiangular sampling (Kulla and Fajardo 2012): with the scattering angle psi and the
     /// lamp's distance D from the line, ds / R^2 = dpsi / D. Sampling psi in proportion to the
     /// phase functions makes the forward peak constant, too. For a sun, distances are sampled by
-    /// transmittance. Uses three random numbers.
+    /// transmittance, and for a part of the sky a direction first. Uses three random numbers, and
+    /// for the sky two more.
     void estimate_in_scatter(const WaterSegment& segment, const PathState& state,
                              PathRandom& random, ContributionSink& sink,
                              NextEventScratch& scratch) const;
     /// Estimates the light of one lamp, chosen in proportion to its expected contribution, that the
     /// surface at the end reflects, and adds what the surface emits. `transmittance`: that of the
-    /// segment. Uses one random number. Precondition: segment.has_hit.
+    /// segment. Uses one random number, and for the sky two more. Precondition: segment.has_hit.
     void estimate_direct_light(const WaterSegment& segment, const Spectrum& transmittance,
                                const PathState& state, PathRandom& random, ContributionSink& sink,
                                NextEventScratch& scratch) const;
@@ -151,8 +175,13 @@ class NextEventEstimator {
     void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;
 
   private:
+    // The columns between the sky, in a direction near that of an emitter, and `x`.
+    void column_to_sky(std::size_t lamp, const Point3& x, const Point3& origin,
+                       std::span<double> column) const;
+
     const WaterOptics& optics_;
     const ScatteringTables& tables_;
+    std::vector<const SkyEmitter*> skies_;
     LampEvenness evenness_;
     std::vector<std::shared_ptr<const DeepShadow>> deep_shadows_;
     std::vector<std::size_t> emitters_;

@@ -1,6 +1,6 @@
 // ctest labels: analytic
-// What images leave out that have a sky as so many directions, and the light of a volume as so many
-// points, against whole images with four times as many.
+// What images leave out that have the shadows of a sky from so many parts, and the light of a
+// volume from so many points, against whole images with four times as many.
 #include "render/light_points.h"
 
 #include <fmt/format.h>
@@ -61,19 +61,26 @@ class LightPoints : public testing::Test {
     Renderer renderer_;
 };
 
-// In water that scatters forwards strongly each direction is a bright spot of its own.
+// Below a slit between two boards each part of the sky casts a shaft of its own.
 const std::string k_below_sky =
     "water: {surface: {height: 2, n: 1.34}, bands: [620, 540, 450], absorption: [0.3, 0.1, 0.1], "
     "scattering: {b: [0.2, 0.3, 0.3], phase: {type: hg, g: 0.9}}}\n"
     "sky: {model: overcast, irradiance: [1, 2, 3]}\n"
-    "geometry: [{type: plane, point: [0, -1, 0], normal: [0, 1, 0], reflectance: 0.3}]\n";
+    "geometry: [{type: plane, point: [0, -1, 0], normal: [0, 1, 0], reflectance: 0.3}, {type: box, "
+    "min: [-5, 0.8, -5], max: [-0.1, 0.85, 5]}, {type: box, min: [0.1, 0.8, -5], max: [5, 0.85, "
+    "5]}]\n";
 
 TEST_F(LightPoints, OfASkyAreJudgedAsImagesOfMoreDirectionsDo) {
-    const SceneDesc desc = scene(k_below_sky);
+    const auto below_slit = [&](int samples) {
+        return scene(k_below_sky,
+                     {"camera.pose.position=[0, 0.1, 0]", "camera.pose.look_at=[0, 0.5, 1]",
+                      fmt::format("sky.samples={}", samples)});
+    };
+    const SceneDesc desc = below_slit(32);
     const std::vector<PointedLamp> lamps = found(desc);
     ASSERT_EQ(lamps.size(), 1U);
     EXPECT_EQ(lamps[0].count, 32U);
-    const double truth = change(desc, scene(k_below_sky, {"sky.samples=128"}));
+    const double truth = change(desc, below_slit(128));
     EXPECT_GT(truth, 0.03);
     // Six places on each ray, and a tenth of the light beside what is seen in the window.
     EXPECT_NEAR(lamps[0].change, truth, 0.15 * truth);
@@ -81,7 +88,7 @@ TEST_F(LightPoints, OfASkyAreJudgedAsImagesOfMoreDirectionsDo) {
     ASSERT_EQ(text.size(), 1U);
     EXPECT_NE(text[0].find("sky.samples: 128"), std::string::npos) << text[0];
     // Of more of them less is left out.
-    const SceneDesc finer = scene(k_below_sky, {"sky.samples=256"});
+    const SceneDesc finer = below_slit(256);
     EXPECT_LT(found(finer)[0].change, 0.5 * truth);
 }
 
