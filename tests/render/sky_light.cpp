@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -267,10 +268,10 @@ INSTANTIATE_TEST_SUITE_P(
                             "{type: hg, g: 0.9}", 0.03, 0.04},
                     SkyCase{"uniform_ff", "{model: uniform, irradiance: [1, 2, 3]}",
                             "{type: fournier-forand}", 0.02, 0.2}),
-    [](const auto& info) {
-        std::string name = info.param.name;
+    [](const auto& each) {
+        std::string name = each.param.name;
         for (char& c : name)
-            if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+            if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
         return name;
     });
 
