@@ -2,10 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "core/light/integrator.h"
 
 namespace uw {
+
+namespace {
+
+constexpr std::size_t k_usual_breaks = 64;  // so that memory is allocated once for most rays
+
+}  // namespace
 
 void append_octaves(const LampPassage& passage, const Interval& interval, std::vector<double>& s) {
     if (passage.parallel) return;
@@ -39,12 +46,14 @@ Interval inside(const Ray& ray, const Bounds& bounds) {
 void PanelBreaks::reset(const Interval& interval) {
     interval_ = interval;
     candidates_.clear();
+    candidates_.reserve(k_usual_breaks);
 }
 
 const std::vector<double>& PanelBreaks::kept() {
     std::sort(candidates_.begin(), candidates_.end(),
               [](const Candidate& a, const Candidate& b) { return a.s < b.s; });
     candidates_.push_back({interval_.end, 0});
+    kept_.reserve(candidates_.size() + 1);
     kept_.assign(1, interval_.begin);
     double spacing_of_last = 0;
     for (const Candidate& candidate : candidates_) {

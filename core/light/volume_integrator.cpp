@@ -70,11 +70,12 @@ ScatterSum::ScatterSum(const Medium& medium)
 
 UWVDB_VECTOR_CLONES void ScatterSum::add(const ScatterNodes& nodes, const Spectrum& intensity,
                                          std::span<Spectrum> radiance) const {
-    std::vector<double> tau(nodes.size()), beta(nodes.size());
+    std::vector<double> memory(2 * nodes.size());
+    const std::span<double> tau = std::span(memory).first(nodes.size());
+    const std::span<double> beta = std::span(memory).subspan(nodes.size());
     // Band by band, so that each loop runs over contiguous nodes without a branch.
     for (std::size_t b = 0; b < static_cast<std::size_t>(attenuation_.band_count); ++b) {
-        tau.assign(nodes.size(), 0.0);
-        beta.assign(nodes.size(), 0.0);
+        std::ranges::fill(beta, 0.0);
         add_depth(nodes, b, tau);
         add_scattering(nodes, b, beta);
         for (std::size_t i = 0; i < nodes.size(); ++i)
@@ -117,8 +118,8 @@ namespace {
 // Greatest change in the optical depth of the whole light path across a Gauss panel: three nodes
 // integrate e^-x over [0, 1.5] to 1e-5.
 constexpr double k_panel_optical_depth = 1.5;
-// The nodes of most rays: they are allocated once, not as they grow.
-constexpr std::size_t k_usual_nodes = 256;
+// The nodes of most rays, and the marks of one kind: they are allocated once, not as they grow.
+constexpr std::size_t k_usual_nodes = 128, k_usual_marks = 32;
 // Light whose path exceeds the least optical depth by this much adds less than 1e-6 of the total.
 constexpr double k_negligible_optical_depth = 15;
 
@@ -290,6 +291,7 @@ void VolumeIntegrator::in_scatter_from(const Ray& ray, double begin,
                                        std::span<const double> distances, InScatter& result) const {
     Workspace w;
     w.nodes.reserve(k_usual_nodes);
+    w.marks.reserve(k_usual_marks);
     const std::vector<Lamp>& emitters = *scene_.emitters;
     result.reset(distances.size(), scene_.lamp_count());
     scene_.field->profile_within(tolerance_, ray, distances.back(), w.profile);

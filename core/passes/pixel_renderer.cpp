@@ -110,8 +110,10 @@ constexpr double k_same_distance = 0.01;
 // through the water does not continue behind the surface that it hits.
 constexpr double k_same_surface = 0.25;
 
-// Sets the view's distances and weights from those of its samples. Distances that agree are merged.
-void group_distances(std::vector<double>& distances, int samples, PixelView& view) {
+// Merges those of the view's distances that agree, one per sample so far, and sets the weights.
+void group_distances(int samples, PixelView& view) {
+    std::vector<double>& distances = view.distances;
+    std::size_t groups = 0;
     std::sort(distances.begin(), distances.end());
     for (std::size_t first = 0; first < distances.size();) {
         std::size_t last = first;
@@ -122,10 +124,11 @@ void group_distances(std::vector<double>& distances, int samples, PixelView& vie
         const auto count = static_cast<double>(last - first);
         const bool at_center =
             view.has_hit && distances[first] <= view.path && view.path <= distances[last - 1];
-        view.distances.push_back(at_center ? view.path : sum / count);
+        distances[groups++] = at_center ? view.path : sum / count;
         view.weights.push_back(count / samples);
         first = last;
     }
+    distances.resize(groups);
 }
 
 }  // namespace
@@ -279,8 +282,6 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
         add_center(view);
         return;
     }
-    std::vector<double> distances;
-    distances.reserve(static_cast<std::size_t>(count));
     const bool has_aperture = rays_.has_aperture();
     const bool differ = has_aperture || rays_.moves();
     const PixelSampling sampling(samples_, x, y);
@@ -305,7 +306,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
         sample.y = y + offset.y;
         if (!scene_.surfaces->closest_hit(*ray, k_far, sample.hit)) {
             view.samples.pop_back();
-            distances.push_back(k_far);
+            view.distances.push_back(k_far);
             lamps_in_view_.append(*ray, k_far, view.lamps);
             continue;
         }
@@ -313,9 +314,9 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
         lamps_in_view_.append(*ray, sample.hit.distance, view.lamps);
         const bool at_center = view.has_hit && sample.hit.object_id == view.hit.object_id &&
                                std::abs(sample.hit.distance / view.path - 1) < k_same_surface;
-        distances.push_back(at_center ? view.path : sample.hit.distance);
+        view.distances.push_back(at_center ? view.path : sample.hit.distance);
     }
-    group_distances(distances, count, view);
+    group_distances(count, view);
 }
 
 void PixelRenderer::light_surfaces(std::span<const PixelView> views, SurfaceLight& light) const {

@@ -16,6 +16,11 @@ constexpr double k_guide_min_relative = 0.3, k_guide_min_cosine = 0.1;
 constexpr double k_guide_min_reflectance = 0.1;
 constexpr double k_guide_min_radius = 0.002;  // m: keeps the radiance finite at a lamp
 constexpr double k_guide_min_depth = 1e-6;
+// Near a point lamp, hardly any light has been scattered more than once. Just below a surface that
+// a sun illuminates everywhere, as much has as some way down: its place in the table is at least
+// this deep. If little were expected there, the few paths that come up from deep water would carry
+// far too much light.
+constexpr double k_guide_min_depth_of_sun = 2;
 // A few bands, evenly spaced, represent all of them.
 constexpr std::size_t k_max_guide_bands = 4;
 
@@ -47,6 +52,11 @@ struct Depth {
 
 double guided_intensity(const Lamp& lamp, const Vector3& from_lamp) {
     return std::max(k_guide_min_relative, lamp.relative_intensity(from_lamp));
+}
+
+/// The optical depth at which the table is looked up.
+double guided_depth(const Lamp& lamp, double depth) {
+    return std::max(depth, lamp.sunlight() ? k_guide_min_depth_of_sun : k_guide_min_depth);
 }
 
 double guided_spread(const Lamp& lamp, double distance) {
@@ -108,7 +118,7 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
         guide.albedo = albedo / sum;
         const double depth = std::max(tau / sum, k_guide_min_depth);
         guide.attenuation = depth / length;
-        guide.place = field.at(depth, guide.albedo);
+        guide.place = field.at(guided_depth(lamps[j], depth), guide.albedo);
         guide.intensity = sum / field.flux(guide.place);
         const double geometry =
             guided_intensity(lamps[j], -to_lamp) / guided_spread(lamps[j], length);
@@ -148,7 +158,7 @@ double GuidingDistribution::source(const Point3& y, const Vector3& direction) co
         const Vector3 to_lamp = lamp.origin(y) - y;
         const double length = std::max(glm::length(to_lamp), 1e-9);
         const LampRadianceTable::Place place =
-            field.at(std::max(length * guide.attenuation, k_guide_min_depth), guide.albedo);
+            field.at(guided_depth(lamp, length * guide.attenuation), guide.albedo);
         light += guide.intensity * guided_intensity(lamp, -to_lamp) * place.radius * place.radius /
                  guided_spread(lamp, length) *
                  field.source(place, half_tangent_between(to_lamp / length, direction));

@@ -7,6 +7,7 @@ namespace uw {
 void split_by_face(const Ray& ray, const Point3& center, const Interval& interval,
                    std::vector<FaceSegment>& segments) {
     segments.clear();
+    segments.reserve(7);  // most of what a line crosses
     const Vector3 o = ray.origin - center;
     const Vector3& d = ray.direction;
     std::array<double, 8> cuts{interval.begin, interval.end};  // ascending
