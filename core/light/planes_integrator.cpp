@@ -52,7 +52,7 @@ struct PlanesIntegrator::Workspace {
     std::vector<double> psi;
     std::vector<double> phase;
     std::vector<Spectrum> beta;
-    // Of a part of the sky:
+    // These are of a part of the sky:
     std::vector<double> mean_phases;
     SkyScattering::Workspace sky;
 };

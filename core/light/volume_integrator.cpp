@@ -254,7 +254,7 @@ struct VolumeIntegrator::Workspace {
     std::vector<Spectrum> radiance;
     std::vector<Spectrum> evenness;  // of the current lamp, up to each distance from the one before
     ScatterNodes nodes;
-    // Of a part of the sky:
+    // These are of a part of the sky:
     std::vector<double> mean_phases;
     SkyScattering::Workspace sky;
 };

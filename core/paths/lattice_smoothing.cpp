@@ -198,8 +198,8 @@ void Smoothing::widen(std::size_t k, const Belong& belong) {
     });
 }
 
-// The light so far is taken to be independent of what the wider fit adds to it: variances add up
-// as if the wider fit were the mean of the light so far and of others.
+// Variances add up as if the wider fit were the mean of the light so far and of others: what the
+// two have in common has the variance of the wider fit.
 void Smoothing::move_towards(const Scale& scale, bool is_wide, std::size_t own) {
     const float factor = factors_[own];
     if (!(factor > 0)) return;

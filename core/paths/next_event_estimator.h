@@ -51,8 +51,8 @@ struct ScatterPlace {
     double half_tangent = 0;  // of the scattering angle
     double radius = 0;        // from the light's origin
     double pdf = 0;           // of the point [1/m], times Lamp::spread
-    /// Of light of the sky, the direction towards it; the pdf is then that of both [1/(m sr)], over
-    /// the weight of multiple importance sampling.
+    /// This is the direction towards the sky, if the light is the sky's; the pdf is then that of
+    /// both [1/(m sr)], over the weight of multiple importance sampling.
     Vector3 towards_sky{0};
     bool is_any_sky = false;  // the direction may be one of any part of the sky, not of the lamp's
 };
