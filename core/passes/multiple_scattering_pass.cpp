@@ -8,7 +8,7 @@
 
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
-#include "core/passes/in_scatter_lattice.h"
+#include "core/passes/error_sums.h"
 #include "core/paths/irradiance_cache.h"
 #include "core/paths/node_lattice.h"
 #include "core/paths/node_smoothing.h"
@@ -523,124 +523,6 @@ void MultipleScattering::add(const PixelView& view, const SurfaceLight& light,
     for (std::size_t b = 0; b < bands_; ++b)
         result.error[b] = result.pixel_factor * errors.of_band(b);
 }
-
-/// Sums all light and the squares of its errors over the parts of an image, by band. Each tile,
-/// which one thread renders, has its own sums, so that the result is the same to the bit for any
-/// number of threads. Thread safe for pixels of different tiles.
-class ErrorSums {
-  public:
-    /// `height`: of the whole image, of which `window` is rendered.
-    ErrorSums(const PixelWindow& window, int height, std::size_t bands)
-        : window_(window), bands_(bands), side_(std::max(1, height / k_parts_of_height)) {
-        tiles_.assign(1 + (window.x1 - 1) / k_tile - window.x0 / k_tile,
-                      1 + (window.y1 - 1) / k_tile - window.y0 / k_tile);
-        for (int j = 0; j < tiles_.height(); ++j)
-            for (int i = 0; i < tiles_.width(); ++i) {
-                Tile& tile = tiles_(i, j);
-                const int x = (window.x0 / k_tile + i) * k_tile,
-                          y = (window.y0 / k_tile + j) * k_tile;
-                tile.first_column = x / side_;
-                tile.first_row = y / side_;
-                tile.parts.assign((x + k_tile - 1) / side_ - tile.first_column + 1,
-                                  (y + k_tile - 1) / side_ - tile.first_row + 1, Sums(bands));
-            }
-    }
-
-    void add(const RenderedPixel& pixel) {
-        Tile& tile =
-            tiles_(pixel.x / k_tile - window_.x0 / k_tile, pixel.y / k_tile - window_.y0 / k_tile);
-        Sums& sums =
-            tile.parts(pixel.x / side_ - tile.first_column, pixel.y / side_ - tile.first_row);
-        const PixelResult& result = pixel.result;
-        ++sums.pixels;
-        for (std::size_t b = 0; b < bands_; ++b) {
-            sums.light[b] +=
-                result.pixel_factor * (result.direct[b] + result.backscatter[b] +
-                                       result.multiple_volume[b] + result.multiple_surface[b]);
-            sums.squares[b] += result.error[b] * result.error[b];
-        }
-    }
-
-    void report(ImageProgress& reached) const {
-        const int first_column = window_.x0 / side_, first_row = window_.y0 / side_;
-        Grid2D<Sums> parts(1 + (window_.x1 - 1) / side_ - first_column,
-                           1 + (window_.y1 - 1) / side_ - first_row, Sums(bands_));
-        Sums image(bands_);
-        for (const Tile& tile : tiles_)
-            for (int j = 0; j < tile.parts.height(); ++j)
-                for (int i = 0; i < tile.parts.width(); ++i) {
-                    const Sums& sums = tile.parts(i, j);
-                    if (sums.pixels == 0) continue;
-                    image.add(sums);
-                    parts(tile.first_column + i - first_column, tile.first_row + j - first_row)
-                        .add(sums);
-                }
-        double light = 0, squares = 0;
-        reached.multiple_error_of_bands.clear();
-        for (std::size_t b = 0; b < bands_; ++b) {
-            reached.multiple_error_of_bands.push_back(image.error(b, 0));
-            light += image.light[b];
-            squares += image.squares[b];
-        }
-        reached.multiple_error =
-            relative(light, squares, image.pixels * static_cast<double>(bands_));
-        report_parts(parts, image, reached);
-    }
-
-  private:
-    static constexpr int k_tile = InScatterLattice::k_tile;  // of render_tiles
-    static constexpr int k_parts_of_height = 10;
-    // Parts that are darker, relative to the image's mean, count as if they were as bright.
-    static constexpr double k_min_light = 0.01;
-
-    static double relative(double light, double squares, double count) {
-        return light > 0 ? std::sqrt(squares * count) / light : 0;
-    }
-
-    struct Sums {
-        double pixels = 0;
-        std::vector<double> light, squares;
-
-        explicit Sums(std::size_t bands = 0) : light(bands), squares(bands) {}
-        void add(const Sums& other) {
-            pixels += other.pixels;
-            for (std::size_t b = 0; b < light.size(); ++b) {
-                light[b] += other.light[b];
-                squares[b] += other.squares[b];
-            }
-        }
-        // Relative to the light of the band, or to this mean if it is more.
-        double error(std::size_t band, double min_mean) const {
-            return relative(std::max(light[band], pixels * min_mean), squares[band], pixels);
-        }
-    };
-    struct Tile {
-        int first_column = 0, first_row = 0;  // of the parts that it meets
-        Grid2D<Sums> parts;
-    };
-
-    void report_parts(const Grid2D<Sums>& parts, const Sums& image, ImageProgress& reached) const {
-        double all_squares = 0, count = 0, worst = 0;
-        for (const Sums& part : parts) {
-            if (part.pixels == 0) continue;
-            double squares = 0;
-            for (std::size_t b = 0; b < bands_; ++b) {
-                const double error = part.error(b, k_min_light * image.light[b] / image.pixels);
-                squares += error * error / static_cast<double>(bands_);
-            }
-            all_squares += squares;
-            worst = std::max(worst, squares);
-            ++count;
-        }
-        reached.multiple_error_of_parts = count > 0 ? std::sqrt(all_squares / count) : 0;
-        reached.multiple_error_of_worst_part = std::sqrt(worst);
-    }
-
-    PixelWindow window_;
-    std::size_t bands_;
-    int side_;  // of a part [pixels]
-    Grid2D<Tile> tiles_;
-};
 
 namespace {
 
