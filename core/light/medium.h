@@ -61,6 +61,10 @@ struct Medium {
     int phase_count() const { return static_cast<int>(phase_functions.size()); }
 };
 
+/// The typical fraction of each phase function in the scattering of all that the water may contain,
+/// as one distribution for all of it; they add up to 1, or are 0 where nothing scatters.
+std::vector<double> typical_phase_fractions(const Medium& medium);
+
 /// The concentration that one unit of a grid's value adds to a constituent of the water.
 struct GridLoad {
     int constituent = 0;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/base/numerics.h"
-#include "core/light/phase_fractions.h"
 #include "core/light/phase_function.h"
 
 namespace uw {

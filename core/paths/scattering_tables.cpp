@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/light/phase_fractions.h"
-
 namespace uw {
 
 ScatteringTables::ScatteringTables(const Medium& medium,
