@@ -147,7 +147,9 @@ constexpr double k_max_slope = 0.35;
 constexpr double k_min_cosine_of_match = 0.7;  // of normals, if no node reaches k_min_node_cosine
 constexpr int k_search_radius = 3;             // radius of the search if no corner matches [cells]
 constexpr int k_paths_of_sample = 32;          // of a sample that no node matches
-constexpr int k_mirrored_paths = 8;            // of a pixel with glossy surfaces
+// Records of the cache within this distance serve for it, relative to the distance of the camera.
+constexpr double k_max_distance_in_cache = 0.05;
+constexpr int k_mirrored_paths = 8;  // of a pixel with glossy surfaces
 
 double lerp_weight(double t, int side) {
     return side == 0 ? 1 - t : t;
@@ -182,7 +184,7 @@ class MultipleScattering {
         double weight;
     };
 
-    void subtract_halo(NodeLattice& lattice, const IrradianceCache& indirect);
+    void subtract_halo(NodeLattice& lattice);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_matches(double x, double y, const SurfaceHit& hit,
                       std::vector<Corner>& matches) const;
@@ -194,6 +196,7 @@ class MultipleScattering {
     void distribute_halo(const RadianceNode& node, std::span<float> halo) const;
     void add_water(const PixelView& view, std::span<double> light, Errors& errors) const;
     void add_volume(const PixelView& view, PixelResult& result, Errors& errors) const;
+    void estimate_unmatched(const SurfaceSample& sample, SmoothNode& node) const;
     void add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
                      PixelResult& result, Errors& errors) const;
     void add_to_lamp(std::size_t group, std::size_t band, double radiance,
@@ -207,6 +210,7 @@ class MultipleScattering {
     IntervalWeights weights_;
     RadianceEstimator estimator_;
     WeightLattice weight_lattice_;  // this and the following: from prepare on
+    std::optional<IrradianceCache> indirect_;
     Grid2D<SmoothNode> nodes_;
     std::optional<SurfaceHalo> halo_;
 };
@@ -255,21 +259,21 @@ void MultipleScattering::prepare(const PixelWindow& window, const ProgressCallba
         plan_paths(estimator_, {static_cast<double>(options_.paths),
                                 static_cast<int>(lattice.all().size()), options_.error});
     constexpr double k_surface_fraction = 0.4;  // of the work: the cache of light on surfaces
-    const IrradianceCache indirect = lattice.light_surfaces(
-        paths, [&](double fraction) { progress(k_surface_fraction * fraction); });
-    lattice.light_water(nodes, paths, indirect, [&](double fraction) {
+    indirect_.emplace(lattice.light_surfaces(
+        paths, [&](double fraction) { progress(k_surface_fraction * fraction); }));
+    lattice.light_water(nodes, paths, *indirect_, [&](double fraction) {
         progress(k_surface_fraction + (1 - k_surface_fraction) * fraction);
     });
-    subtract_halo(lattice, indirect);
+    subtract_halo(lattice);
     weight_lattice_ = WeightLattice(rays, weights_, window);
     nodes_ = lattice.smoothed(nodes, intervals_);
     lattice.find_errors(nodes, nodes_);
 }
 
 // Computes the halo and subtracts it from the light of the nodes.
-void MultipleScattering::subtract_halo(NodeLattice& lattice, const IrradianceCache& indirect) {
+void MultipleScattering::subtract_halo(NodeLattice& lattice) {
     const std::size_t groups = estimator_.groups();
-    const HaloSource source(pixels_, indirect);
+    const HaloSource source(pixels_, *indirect_);
     const auto radiance = [&](const SurfaceSample& sample, const SurfaceLight& light,
                               std::size_t index, std::span<double> channels) {
         source.find_radiance(sample, light, index, channels);
@@ -459,14 +463,36 @@ void MultipleScattering::find_matches(double x, double y, const SurfaceHit& hit,
     }
 }
 
+// The surface is too small or too rough for the lattice in the image. Places near by in the world
+// serve as well, with the errors of the nodes around; if there are none, paths are traced for this
+// sample.
+void MultipleScattering::estimate_unmatched(const SurfaceSample& sample, SmoothNode& node) const {
+    const SurfaceHit& hit = sample.hit;
+    const bool is_glossy = hit.has_material && pixels_.scene().surfaces->material(hit).is_glossy;
+    if (is_glossy || !indirect_->covers(hit, k_max_distance_in_cache * hit.distance)) {
+        estimator_.estimate_surface(sample, k_paths_of_sample, node.light, node.surface_errors);
+        return;
+    }
+    std::vector<double> diffuse(indirect_->values());
+    indirect_->find(hit, diffuse);
+    node.light.diffuse.assign(diffuse.begin(), diffuse.end());
+    node.surface_errors.diffuse.assign(bands_, 0.0F);
+    std::vector<Corner> corners;
+    find_corners(sample.x, sample.y, corners);
+    for (const Corner& corner : corners) {
+        const std::vector<float>& errors = corner.node->surface_errors.diffuse;
+        for (std::size_t b = 0; b < errors.size(); ++b)
+            node.surface_errors.diffuse[b] = std::max(node.surface_errors.diffuse[b], errors[b]);
+    }
+}
+
 void MultipleScattering::add_surface(const SurfaceSample& sample, std::span<const double> to_camera,
                                      PixelResult& result, Errors& errors) const {
     std::vector<Corner> matches;
     SmoothNode own;
     find_matches(sample.x, sample.y, sample.hit, matches);
     if (matches.empty()) {
-        // The surface is too small for the lattice: trace paths for this sample.
-        estimator_.estimate_surface(sample, k_paths_of_sample, own.light, own.surface_errors);
+        estimate_unmatched(sample, own);
         matches.push_back({&own, 1});
     }
     double total = 0;

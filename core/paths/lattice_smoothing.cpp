@@ -18,6 +18,9 @@ constexpr int k_wide_radius = 4;
 // A bias is assumed as far as the median of the products is above this fraction of the variance.
 // The noise of the median is about as great.
 constexpr double k_noise_of_bias = 0.4;
+// What counts is the error of what an eye takes in at a time, which is some nodes across: they
+// share a bias of the widest neighbourhood, but not all of the noise that it takes away.
+constexpr double k_shared_noise = 0.5;
 static_assert(k_scale_radii.back() == k_max_radius &&
               k_smoothing_reach == k_max_radius + static_cast<int>(k_scale_radii.size()) - 1);
 
@@ -191,6 +194,7 @@ void Smoothing::widen(std::size_t k, const Belong& belong) {
                          products.begin() + static_cast<std::ptrdiff_t>(count));
         const double bias = static_cast<double>(products[static_cast<std::size_t>(middle)]) -
                             k_noise_of_bias * noise;
+        if (k_scale_radii[k] == k_max_radius) noise *= k_shared_noise;
         if (bias > 0) factors_[own] = static_cast<float>(noise / (noise + bias));
     });
     for_each([&](int, int, std::size_t own) {

@@ -273,9 +273,9 @@ void RadianceEstimator::estimate_water(const Place& place, const NodePaths& path
     ExpectedLight& expected = w.segment.expected;
     if (expected.is_known) expected.pixel = std::max(expected.pixel, node.mean_light);
     if (expected.is_known && weights_.vary()) {
-        // Particles may be lit anywhere, which the lamps' guides do not know. The typical light is
-        // estimated without most of the multiple scattering, which is a few times as much.
-        constexpr double k_ambient = 10, k_min_expected = 3;
+        // Particles may be lit anywhere, which the lamps' guides do not know. If more were expected
+        // of dark water than it has, roulette would leave it a few paths that are far too bright.
+        constexpr double k_ambient = 1, k_min_expected = 0.2;
         expected.ambient = std::max(expected.ambient, k_ambient * typical_light);
         expected.pixel = std::max(expected.pixel, k_min_expected * typical_light);
     }
