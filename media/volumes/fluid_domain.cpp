@@ -196,17 +196,17 @@ std::optional<double> fluid_frame_rate(const std::filesystem::path& data_file) {
 std::string FluidDomain::description() const {
     constexpr const char* k_cause =
         "it was baked with Blender's 'Adaptive Domain' (Physics > Fluid > Settings), whose files "
-        "hold a wrong voxel size, other in every frame";
+        "hold a wrong voxel size, a different one in each frame";
     if (voxel)
         return fmt::format(
             "{}: {:.4g} x {:.4g} x {:.4g} m and the place of each frame in the domain are taken "
             "from the cache's folder config",
             k_cause, voxel->x, voxel->y, voxel->z);
     return fmt::format(
-        "{0}: keep the cache's folder config beside data, or give the volume voxel_size: {1:.4g} "
-        "m, the domain's longest side, divided by its Resolution Divisions (at least {2}, so "
-        "voxel_size: {3:.4g} or less), or bake without that checkbox, as the place in the domain "
-        "is lost, too",
+        "{0}: keep the cache's folder config beside data; or give the volume as voxel_size the "
+        "length of the domain's longest side, {1:.4g} m, divided by its Resolution Divisions (at "
+        "least {2}, so voxel_size: {3:.4g} or less); or bake without that checkbox, as the place "
+        "in the domain is lost, too",
         k_cause, longest_side, max_voxels, max_voxel());
 }
 

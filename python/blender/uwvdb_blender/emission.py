@@ -128,8 +128,8 @@ class _Shader:
         if number <= 0:
             return []
         if reading is None:
-            self._note("its emission strength is the same everywhere, which no grid is; this light is left "
-                       "out: multiply it by an attribute such as flame")
+            self._note("its emission strength is the same everywhere, so this light is left out: multiply it by "
+                       "an attribute such as flame")
             return []
         colour = factor * number * self._colour(node.inputs["Emission Color"])
         steps = None
@@ -146,8 +146,7 @@ class _Shader:
         reading = self._reading(attribute)
         if reading is None:
             if self._domain is None:  # a domain without fire is cold
-                self._note(f"its file has no grid '{attribute}', so that it is as hot everywhere, which no "
-                           "grid is; this light is left out")
+                self._note(f"its file has no grid '{attribute}' of temperatures; this light is left out")
             return []
         kelvin = float(self._own_value(node.inputs["Temperature"]))
         if kelvin <= 0:

@@ -113,9 +113,9 @@ TABLE = (
     Feature("surface", "shown like any other: shadow catchers are left out", lambda o, by, s: o.is_shadow_catcher),
     Feature("shown", "casts a shadow here, although its Ray Visibility has none",
             lambda o, by, s: not o.visible_shadow),
-    Feature("shown", "seen by all light: Ray Visibility has an effect here for cameras alone",
+    Feature("shown", "visible to all light: here, Ray Visibility has an effect for cameras only",
             lambda o, by, s: not all(getattr(o, rays) for rays in RAYS)),
-    Feature("surface", "deforms, which motion blur and the Vector pass leave out: they have what whole objects do",
+    Feature("surface", "deforms, which motion blur and the Vector pass leave out: they show whole objects moving",
             lambda o, by, s: s.moments is not None and o.name_full in s.moments.deforming),
     Feature("shown", "blurred as it moves, although its own Motion Blur is off",
             lambda o, by, s: s.scene.render.use_motion_blur and not cycles(o, "use_motion_blur", True)),
@@ -157,7 +157,7 @@ TABLE = (
     # The view layer.
     Feature("layer", "View Layer > Filter is left out: surfaces, volumes and motion blur are shown",
             lambda v, s: not all(getattr(v, f"use_{kind}", True) for kind in ("solid", "volumes", "motion_blur"))),
-    Feature("layer", "some passes are not made; those that are stand in View Layer > Passes",
+    Feature("layer", "some passes are not made; View Layer > Passes lists those that are",
             lambda v, s: bool(_other_passes(v)) or len(getattr(v, "aovs", ())) > 0),
     Feature("layer", "light groups make no passes: View Layer > Passes > Lamps has each light by itself",
             lambda v, s: len(getattr(v, "lightgroups", ())) > 0),
@@ -166,13 +166,13 @@ TABLE = (
     # The render.
     Feature("scene", "Film > Exposure of Cycles is left out: Render > Color Management > Exposure has the same effect",
             lambda r, s: abs(cycles(r, "film_exposure", 1) - 1) > 1e-6),
-    Feature("scene", "Film > Transparent is left out: what is behind everything is water",
+    Feature("scene", "Film > Transparent is left out: there is water behind everything",
             lambda r, s: r.render.film_transparent),
     Feature("scene", "the shutter opens at once: its curve is left out",
             lambda r, s: r.render.use_motion_blur and _curve_of_shutter(r.render)),
     Feature("scene", "all rows are exposed at once: the rolling shutter is left out",
             lambda r, s: r.render.use_motion_blur and cycles(r, "rolling_shutter_type", "NONE") != "NONE"),
-    Feature("scene", "Blender draws Freestyle's lines over the picture: there is no water before them",
+    Feature("scene", "Blender draws Freestyle's lines over the picture, with no water in front of them",
             lambda r, s: r.render.use_freestyle and s.layer.use_freestyle),
 )
 

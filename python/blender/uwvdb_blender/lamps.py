@@ -167,7 +167,7 @@ class Lamps:
             return None
         node = found[0]
         if node.type != "EMISSION":
-            self._note(shown, f"of its nodes an Emission is used alone, not {node.bl_label}")
+            self._note(shown, f"only an Emission node is used, not {node.bl_label}")
             return colour, None
         value, ies = float(node.inputs["Strength"].default_value), None
         behind = source_of(node.inputs["Strength"])
@@ -203,11 +203,11 @@ class Lamps:
                 with open(path, encoding="latin-1") as file:
                     text = file.read()
             except OSError as error:
-                self._note(shown, f"IES file '{path}': {error.strerror}; it shines without")
+                self._note(shown, f"IES file '{path}': {error.strerror}; the light shines without it")
                 return None
         seen = as_cycles_sees(text)
         if seen is None:
-            self._note(shown, "its IES file cannot be read; it shines without")
+            self._note(shown, "its IES file cannot be read; the light shines without it")
             return None
         text, greatest = seen
         return self._write_luminaire(text), greatest

@@ -325,7 +325,7 @@ class Exporter:
         node = found[0]
         inner = source_of(node.inputs["Color"]) if node.type == "NORMAL_MAP" else None
         if inner is None or not self._is_image(inner[0]) or node.space != "TANGENT":
-            self._note(material, f"of bumps, only tangent-space normal maps are supported; "
+            self._note(material, f"the only bumps supported are tangent-space normal maps; "
                                  f"the {node.bl_label} node is left out")
             return
         texture = self._texture(material, done, inner[0], images.data_file, "data")
@@ -388,7 +388,7 @@ class Exporter:
             self._note(material, f"image '{image.name}' cannot be loaded")
             return None
         if node.extension == "CLIP":
-            self._note(material, f"image '{image.name}' goes on beyond its edge (extension: clip)")
+            self._note(material, f"image '{image.name}' continues beyond its edge: the extension Clip is not supported")
         uv_map, transform = place
         if uv_map not in done.uv_maps:
             done.uv_maps.append(uv_map)

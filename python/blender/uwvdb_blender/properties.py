@@ -109,7 +109,7 @@ class UwvdbWorld(bpy.types.PropertyGroup):
     hg_g: FloatProperty(name="Asymmetry g", default=0.9, min=-0.99, max=0.99, precision=3,
                         description="Henyey and Greenstein's, towards 1 for light scattered forward")
     use_surface: BoolProperty(name="Surface", default=False,
-                              description="Where the water ends; suns need it, nothing else looks at it")
+                              description="Where the water ends; only suns need it")
     surface_height: FloatProperty(name="Height", default=10, unit="LENGTH",
                                   description="z of the water's surface")
     use_snow: BoolProperty(name="Marine Snow", default=False,
@@ -143,7 +143,7 @@ class UwvdbCamera(bpy.types.PropertyGroup):
     tilt: FloatProperty(name="Tilt", default=0, min=0, max=math.radians(80), subtype="ANGLE",
                         description="Angle between the glass's normal and the camera's axis")
     tilt_towards: FloatProperty(name="Towards", default=0, subtype="ANGLE",
-                                description="Where the normal leans to: 0 right, 90 degrees up")
+                                description="Where the normal leans: 0 to the right, 90 degrees up")
     radius: FloatProperty(name="Radius", default=0.05, min=1e-4, soft_max=0.5, unit="LENGTH",
                           precision=4, description="Of the dome's inner glass surface")
     center: FloatVectorProperty(

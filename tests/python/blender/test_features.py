@@ -127,7 +127,7 @@ PROVOKED = {
     "holdouts, of objects and of collections": lambda: in_collection(holdout=True),
     "shadow catchers": lambda: on(thing(), is_shadow_catcher=True),
     "casts a shadow here, although": lambda: on(thing(), visible_shadow=False),
-    "seen by all light": lambda: on(thing(), visible_glossy=False),
+    "visible to all light": lambda: on(thing(), visible_glossy=False),
     "deforms": deform,
     "its own Motion Blur is off": blurred_less,
     "not culled": cull,
