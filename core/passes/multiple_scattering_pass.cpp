@@ -553,12 +553,13 @@ void MultipleScattering::add(const PixelView& view, const SurfaceLight& light,
 namespace {
 
 // These give a standard error of less than 1 % where light crosses an optical depth of about one,
-// and of 5 % for drafts.
-MultipleLightOptions options_of(RenderDesc::Quality quality) {
+// and of 5 % for drafts. Small images need fewer nodes.
+MultipleLightOptions options_of(RenderDesc::Quality quality, double pixels) {
+    constexpr double k_pixels_of_node = 4, k_paths_of_node = 120;
     MultipleLightOptions options;
-    options.nodes = 5000;
+    options.nodes = static_cast<int>(std::clamp(pixels / k_pixels_of_node, 1000.0, 5000.0));
     options.cells = 1'000'000;
-    options.paths = 600'000;
+    options.paths = static_cast<int>(k_paths_of_node * options.nodes);
     options.error = 0.012;
     if (quality == RenderDesc::Quality::draft) {
         options.nodes = 1000;
@@ -607,13 +608,15 @@ void MultipleScatteringPass::begin(Rendering& rendering) {
 
 void MultipleScatteringPass::run(Rendering& rendering) {
     if (!rendering.pixels.transport().paths || !has_light(rendering.pixels)) return;
-    MultipleLightOptions options = options_of(rendering.desc.render.quality);
+    const RaySource& rays = rendering.pixels.rays();
+    MultipleLightOptions options = options_of(rendering.desc.render.quality,
+                                              static_cast<double>(rays.width()) * rays.height());
     options.paths = static_cast<int>(options.paths * path_factor_);
     options.error /= std::sqrt(path_factor_);
     options.lamps = rendering.plan.has_lamps();
     light_ = std::make_unique<MultipleScattering>(rendering.pixels, options);
     light_->prepare(rendering.film.window(), rendering.progress_of(*stage()));
-    sums_ = std::make_unique<ErrorSums>(rendering.film.window(), rendering.pixels.rays().height(),
+    sums_ = std::make_unique<ErrorSums>(rendering.film.window(), rays.height(),
                                         static_cast<std::size_t>(rendering.pixels.band_count()));
 }
 
