@@ -162,8 +162,7 @@ void Progress::print_json(double fraction, std::optional<double> seconds_left,
     Json line{{"stage", label_}, {"fraction", std::min(fraction, 1.0)}};
     if (seconds_left) line["seconds_left"] = *seconds_left;
     if (!note.empty()) line["note"] = note;
-    // Names in it may not be valid UTF-8.
-    print_message(line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+    print_message(json_line(line) + "\n");
 }
 
 void Progress::draw_bar(double fraction, const std::string& figures) {

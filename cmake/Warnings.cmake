@@ -9,6 +9,11 @@ target_compile_options(uwvdb_options INTERFACE
     -ffile-prefix-map=${PROJECT_SOURCE_DIR}/=
     # Allows inlining in the position-independent code of the library as elsewhere
     -fno-semantic-interposition)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    # The compiler collects its garbage from 0.8 GB on, not from 0.25 GB on, which saves a tenth of its time.
+    # The largest unit takes 1.4 GB either way.
+    target_compile_options(uwvdb_options INTERFACE "SHELL:--param ggc-min-heapsize=400000")
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
     # GCC 12 takes "text" + a_string, once inlined, for a copy that overlaps (its bug 105651).
     target_compile_options(uwvdb_options INTERFACE -Wno-restrict)

@@ -20,7 +20,7 @@
 #include "core/image/image_file.h"
 #include "core/light/integrator_table.h"
 #include "core/scene/pose_file.h"
-#include "render/derivatives.h"
+#include "render/derivatives/derivatives.h"
 #include "render/scene_loading.h"
 
 namespace uw {

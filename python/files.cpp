@@ -5,10 +5,10 @@
 
 #include "camera/calibration.h"
 #include "core/scene/yaml_document.h"
+#include "media/inspection/vdb_inspect.h"
 #include "media/volumes/array_grid.h"
 #include "media/volumes/loaded_grid.h"
 #include "media/volumes/vdb_header.h"
-#include "media/volumes/vdb_inspect.h"
 #include "python/arguments.h"
 #include "python/bindings.h"
 #include "python/camera.h"

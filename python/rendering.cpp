@@ -32,7 +32,7 @@
 #include "python/bindings.h"
 #include "python/scene.h"
 #include "python/watched_task.h"
-#include "render/derivatives.h"
+#include "render/derivatives/derivatives.h"
 #include "render/image_header.h"
 #include "render/image_scene.h"
 #include "render/run/job.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/json.h"
+#include "core/base/json_string.h"
 #include "core/base/text.h"
 #include "core/base/version.h"
 #include "core/image/cryptomatte.h"
@@ -26,9 +26,7 @@ constexpr std::size_t k_longest_name = 4096;
 std::string names_by_number(const NameList& list) {
     std::string text = "{";
     for (std::size_t k = 0; k < list.size(); ++k) {
-        text +=
-            fmt::format("{}\"{}\":{}", k == 0 ? "" : ",", k + 1,
-                        Json(list[k].name).dump(-1, ' ', false, Json::error_handler_t::replace));
+        text += fmt::format("{}\"{}\":{}", k == 0 ? "" : ",", k + 1, json_string(list[k].name));
     }
     return text + "}";
 }

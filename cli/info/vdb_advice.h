@@ -7,7 +7,7 @@
 
 #include "cli/info/plume_view.h"
 #include "core/base/ray.h"
-#include "media/volumes/vdb_inspect.h"
+#include "media/inspection/vdb_inspect.h"
 
 namespace uw {
 

@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include "cli/render/picture_numbers.h"
 #include "core/base/csv_table.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/output_files.h"
 #include "core/base/version.h"
 
@@ -65,8 +65,6 @@ void RunStats::set_output(const std::string& name, std::optional<int> frame) {
 
 /// The only user of the JSON library here.
 struct StatsJson {
-    using Json = nlohmann::ordered_json;
-
     static Json begin(const std::string& scene) {
         Json json;
         json["uwvdb"] = program_version();
@@ -104,7 +102,7 @@ struct StatsJson {
         json["peak_memory_bytes"] = RunStats::peak_memory_bytes();
         AtomicFile target(file);
         std::ofstream out(target.temporary_path());
-        out << json.dump(2) << "\n";
+        out << json_text(json);
         out.close();
         if (!out) throw IoError(fmt::format("{}: cannot write; is the disk full?", file.string()));
         target.commit();
@@ -130,15 +128,15 @@ std::string RunStats::numbers_csv() const {
 }
 
 void RunStats::write_json(const std::filesystem::path& file, const std::string& scene) const {
-    StatsJson::Json json = StatsJson::begin(scene);
+    Json json = StatsJson::begin(scene);
     StatsJson::add(*this, json);
     StatsJson::write(file, std::move(json));
 }
 
 void RunStats::write_json(const std::filesystem::path& file, const std::string& scene,
                           std::span<const RunStats> images) {
-    StatsJson::Json json = StatsJson::begin(scene);
-    json["frames"] = StatsJson::Json::array();
+    Json json = StatsJson::begin(scene);
+    json["frames"] = Json::array();
     for (const RunStats& stats : images) StatsJson::add(stats, json["frames"].emplace_back());
     StatsJson::write(file, std::move(json));
 }

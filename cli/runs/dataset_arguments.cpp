@@ -7,9 +7,9 @@
 #include <charconv>
 
 #include "cli/image_choice.h"
+#include "cli/pages/shell.h"
 #include "cli/render/frame_sequence.h"
 #include "cli/render/run_scenes.h"
-#include "cli/shell.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/version.h"

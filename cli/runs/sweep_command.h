@@ -11,7 +11,7 @@
 #include "cli/render/picture_numbers.h"
 #include "core/base/progress.h"
 #include "render/measures/picture_numbers.h"
-#include "render/measures/target_probe.h"
+#include "render/meters/target_probe.h"
 #include "render/run/job.h"
 
 namespace uw {

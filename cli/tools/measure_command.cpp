@@ -15,7 +15,7 @@
 #include "cli/report.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "render/measures/light_meter.h"
+#include "render/meters/light_meter.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
 

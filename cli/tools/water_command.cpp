@@ -15,7 +15,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/scene/scene_desc.h"
-#include "media/water/water_table.h"
+#include "media/inspection/water_table.h"
 #include "media/water/water_types.h"
 
 namespace uw {

@@ -8,7 +8,7 @@
 #include "cli/report.h"
 #include "core/scene/volume_desc.h"
 #include "core/scene/water_desc.h"
-#include "media/water/water_table.h"
+#include "media/inspection/water_table.h"
 
 namespace uw {
 

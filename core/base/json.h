@@ -27,5 +27,7 @@ Json bounds_json(const Bounds& bounds);
 /// Indented, with a newline at the end. Names come from users' files and need not be valid UTF-8:
 /// invalid bytes are replaced.
 std::string json_text(const Json& json);
+/// The same on one line, without a newline.
+std::string json_line(const Json& json);
 
 }  // namespace uw

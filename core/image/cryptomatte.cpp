@@ -7,7 +7,7 @@
 #include <set>
 #include <tuple>
 
-#include "core/base/json.h"
+#include "core/base/json_string.h"
 
 namespace uw {
 
@@ -62,12 +62,11 @@ void add_matte_header(MatteOf of, std::span<const std::string> names, ImageMetad
     const std::string name(typename_of(of));
     const std::string key =
         "cryptomatte/" + fmt::format("{:08x}", murmur_hash_3(name)).substr(0, 7) + "/";
-    // A set, as Json would look through all names before it adds one.
+    // The set has each name once.
     std::string manifest;
     for (const std::string& of_surface : std::set(names.begin(), names.end()))
         manifest +=
-            fmt::format("{}{}:\"{:08x}\"", manifest.empty() ? "{" : ",",
-                        Json(of_surface).dump(-1, ' ', false, Json::error_handler_t::replace),
+            fmt::format("{}{}:\"{:08x}\"", manifest.empty() ? "{" : ",", json_string(of_surface),
                         std::bit_cast<std::uint32_t>(matte_id(of_surface)));
     metadata[key + "name"] = name;
     metadata[key + "hash"] = std::string("MurmurHash3_32");

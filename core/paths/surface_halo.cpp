@@ -32,13 +32,13 @@ class WaterInView {
         for (const Constituent& constituent : medium_.constituents)
             per_unit_.push_back(constituent.per_unit.total_scattering());
         uniform_ = medium_.uniform.total_scattering();
-        constexpr int k_rays_across = 16;
+        constexpr int k_rays_per_axis = 16;
         std::vector<double> columns(per_unit_.size());
         double length = 0;
-        for (int j = 0; j < k_rays_across; ++j)
-            for (int i = 0; i < k_rays_across; ++i) {
-                const auto ray = rays.refracted_ray((i + 0.5) * rays.width() / k_rays_across,
-                                                    (j + 0.5) * rays.height() / k_rays_across);
+        for (int j = 0; j < k_rays_per_axis; ++j)
+            for (int i = 0; i < k_rays_per_axis; ++i) {
+                const auto ray = rays.refracted_ray((i + 0.5) * rays.width() / k_rays_per_axis,
+                                                    (j + 0.5) * rays.height() / k_rays_per_axis);
                 if (!ray) continue;
                 const double end = scene.surfaces->hit_distance(*ray);
                 if (!(end < k_far)) continue;

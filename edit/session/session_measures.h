@@ -11,7 +11,7 @@
 #include "edit/session/edit_session.h"
 #include "edit/session/suggest.h"
 #include "render/image_scene.h"
-#include "render/measures/target_probe.h"
+#include "render/meters/target_probe.h"
 
 namespace uw {
 

@@ -8,7 +8,7 @@
 
 #include "core/base/vector_math.h"
 #include "core/scene/lamp_desc.h"
-#include "render/measures/target_probe.h"
+#include "render/meters/target_probe.h"
 
 namespace uw {
 

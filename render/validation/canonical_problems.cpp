@@ -17,7 +17,7 @@
 #include "core/scene/scene_desc.h"
 #include "media/volumes/stratified_field.h"
 #include "media/water/tabulated_phase.h"
-#include "render/measures/light_meter.h"
+#include "render/meters/light_meter.h"
 #include "render/scene_assembly.h"
 #include "render/scene_cache.h"
 #include "render/validation/published_tables.h"

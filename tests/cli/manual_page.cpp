@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "cli/shell.h"
+#include "cli/pages/shell.h"
 
 #include <gtest/gtest.h>
 

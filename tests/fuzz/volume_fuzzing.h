@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "media/inspection/vdb_inspect.h"
 #include "media/volumes/vdb_file.h"
 #include "media/volumes/vdb_header.h"
-#include "media/volumes/vdb_inspect.h"
 #include "tests/fuzz/fuzzing.h"
 
 namespace uw::fuzz {

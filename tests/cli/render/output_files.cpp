@@ -44,6 +44,16 @@ TEST_F(OutputFiles, QuietPrintsWarningsOnly) {
     EXPECT_NE(warnings.find("warning: the image is black"), std::string::npos);
 }
 
+TEST_F(OutputFiles, MayHaveNamesThatAreNoText) {
+    const test::ProgramResult result = run({"render", "scene.yaml", "-o", "dive\xff.exr", "--size",
+                                            "8x4", "--stats", "s.json", "--progress", "json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(exists("dive\xff.exr"));
+    // U+FFFD takes the place of a byte that is not UTF-8, which JSON cannot express.
+    EXPECT_NE(read("s.json").find("\"output\": \"dive\xEF\xBF\xBD.exr\""), std::string::npos)
+        << read("s.json");
+}
+
 TEST_F(OutputFiles, AreLookedAtBeforeRendering) {
     // Whoever were to render first would need hours for this.
     const std::vector<std::string> slow{"render",       "scene.yaml", "--size",    "1920x1080",

@@ -1,10 +1,15 @@
 // ctest labels: unit
 #include "core/base/json.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <limits>
+#include <string>
+#include <utility>
+
+#include "core/base/json_string.h"
 
 namespace uw {
 namespace {
@@ -40,6 +45,23 @@ TEST(JsonOutput, BytesThatAreNoTextAreReplaced) {
     Json json;
     json["name"] = "plume\xff";
     EXPECT_EQ(Json::parse(json_text(json)).at("name"), "plume\xEF\xBF\xBD");
+    EXPECT_EQ(json_line(json), "{\"name\":\"plume\xEF\xBF\xBD\"}");
+}
+
+TEST(JsonString, IsWhatRfc8259SaysOfEachByte) {
+    for (int byte = 0; byte < 256; ++byte) {
+        const char c = static_cast<char>(byte);
+        std::string expected = fmt::format("\\u{:04x}", byte);  // control characters
+        if (byte >= 0x80) expected = "\xEF\xBF\xBD";            // alone no UTF-8: U+FFFD
+        if (byte >= 0x20 && byte < 0x80) expected = std::string(1, c);
+        for (const auto& [plain, escaped] :
+             {std::pair('"', "\\\""), std::pair('\\', "\\\\"), std::pair('\b', "\\b"),
+              std::pair('\f', "\\f"), std::pair('\n', "\\n"), std::pair('\r', "\\r"),
+              std::pair('\t', "\\t")})
+            if (c == plain) expected = escaped;
+        EXPECT_EQ(json_string(std::string(1, c)), '"' + expected + '"') << byte;
+    }
+    EXPECT_EQ(json_string("Kelp ä"), "\"Kelp ä\"");
 }
 
 }  // namespace

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <fstream>
 
+#include "media/inspection/vdb_inspect.h"
 #include "media/volumes/vdb_file.h"
-#include "media/volumes/vdb_inspect.h"
 #include "tests/support/file_bytes.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_loading.h"

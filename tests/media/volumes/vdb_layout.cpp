@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "media/volumes/vdb_inspect.h"
+#include "media/inspection/vdb_inspect.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/vdb/vdb_loading.h"
 

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/scene_desc.h"
+#include "media/inspection/water_table.h"
 #include "media/water/species.h"
 #include "media/water/water_model.h"
-#include "media/water/water_table.h"
 #include "media/water/water_types.h"
 #include "tests/support/message_of.h"
 #include "tests/support/scene_folder.h"

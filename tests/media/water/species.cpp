@@ -9,9 +9,9 @@
 
 #include "core/scene/dispersion.h"
 #include "core/scene/scene_desc.h"
+#include "media/inspection/water_table.h"
 #include "media/water/mie.h"
 #include "media/water/water_model.h"
-#include "media/water/water_table.h"
 #include "media/water/water_types.h"
 #include "tests/support/message_of.h"
 #include "tests/support/phase_function_laws.h"

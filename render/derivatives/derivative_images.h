@@ -10,8 +10,8 @@
 #include "core/image/film.h"
 #include "core/light/volume_integrator.h"
 #include "core/passes/pixel_renderer.h"
-#include "core/paths/contribution_gradient.h"
-#include "core/paths/path_scores.h"
+#include "render/derivatives/contribution_gradient.h"
+#include "render/derivatives/path_scores.h"
 
 namespace uw {
 

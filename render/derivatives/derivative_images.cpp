@@ -1,4 +1,4 @@
-#include "core/passes/derivative_images.h"
+#include "render/derivatives/derivative_images.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@
 
 #include "core/geometry/texture.h"
 #include "core/geometry/textured_surfaces.h"
-#include "core/paths/contribution_gradient.h"
+#include "render/derivatives/contribution_gradient.h"
 
 namespace uw {
 

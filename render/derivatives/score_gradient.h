@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/base/random.h"
-#include "core/paths/contribution_gradient.h"
-#include "core/paths/path_scores.h"
+#include "render/derivatives/contribution_gradient.h"
+#include "render/derivatives/path_scores.h"
 
 namespace uw {
 

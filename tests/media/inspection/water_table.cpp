@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "media/water/water_table.h"
+#include "media/inspection/water_table.h"
 
 #include <gtest/gtest.h>
 

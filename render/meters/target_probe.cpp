@@ -1,4 +1,4 @@
-#include "render/measures/target_probe.h"
+#include "render/meters/target_probe.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

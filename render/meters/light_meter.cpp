@@ -1,4 +1,4 @@
-#include "render/measures/light_meter.h"
+#include "render/meters/light_meter.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "core/paths/texel_gradient.h"
+#include "render/derivatives/texel_gradient.h"
 
 #include "core/base/spectrum.h"
 

@@ -1,4 +1,4 @@
-#include "media/water/water_table.h"
+#include "media/inspection/water_table.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "media/volumes/voxel_gradient.h"
+#include "render/derivatives/voxel_gradient.h"
 
 #include <algorithm>
 #include <cmath>

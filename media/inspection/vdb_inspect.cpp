@@ -1,4 +1,4 @@
-#include "media/volumes/vdb_inspect.h"
+#include "media/inspection/vdb_inspect.h"
 
 #include <fmt/format.h>
 

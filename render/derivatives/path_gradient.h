@@ -6,7 +6,7 @@
 
 #include "core/light/integrator.h"
 #include "core/light/medium.h"
-#include "core/paths/contribution_gradient.h"
+#include "render/derivatives/contribution_gradient.h"
 
 namespace uw {
 

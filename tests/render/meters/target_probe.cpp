@@ -1,5 +1,5 @@
 // ctest labels: unit analytic metamorphic
-#include "render/measures/target_probe.h"
+#include "render/meters/target_probe.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // ctest labels: analytic
 // Light meters in water that scatters nothing, where all they read has a closed form.
-#include "render/measures/light_meter.h"
+#include "render/meters/light_meter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // ctest labels: unit
-#include "media/volumes/vdb_inspect.h"
+#include "media/inspection/vdb_inspect.h"
 
 #include <gtest/gtest.h>
 

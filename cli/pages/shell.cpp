@@ -1,4 +1,4 @@
-#include "cli/shell.h"
+#include "cli/pages/shell.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "render/derivatives.h"
+#include "render/derivatives/derivatives.h"
 
 #include <fmt/format.h>
 
@@ -15,12 +15,12 @@
 #include "core/geometry/mesh.h"
 #include "core/geometry/textured_surfaces.h"
 #include "core/light/integrator_table.h"
-#include "core/passes/derivative_images.h"
-#include "core/paths/path_gradient.h"
-#include "core/paths/score_gradient.h"
-#include "core/paths/texel_gradient.h"
-#include "media/volumes/voxel_gradient.h"
 #include "media/water/water_model.h"
+#include "render/derivatives/derivative_images.h"
+#include "render/derivatives/path_gradient.h"
+#include "render/derivatives/score_gradient.h"
+#include "render/derivatives/texel_gradient.h"
+#include "render/derivatives/voxel_gradient.h"
 #include "render/exposure.h"
 
 namespace uw {

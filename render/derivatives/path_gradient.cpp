@@ -1,4 +1,4 @@
-#include "core/paths/path_gradient.h"
+#include "render/derivatives/path_gradient.h"
 
 #include <algorithm>
 

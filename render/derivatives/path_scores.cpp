@@ -1,4 +1,4 @@
-#include "core/paths/path_scores.h"
+#include "render/derivatives/path_scores.h"
 
 #include <algorithm>
 #include <cmath>

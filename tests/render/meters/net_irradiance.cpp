@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/scene/scene_desc.h"
-#include "render/measures/light_meter.h"
+#include "render/meters/light_meter.h"
 #include "render/renderer.h"
 #include "tests/support/scene_folder.h"
 

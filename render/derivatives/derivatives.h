@@ -31,11 +31,11 @@ struct DerivativeOptions {
 ///
 /// Single scattering is differentiated term by term at the nodes of the integrator volume. Multiple
 /// scattering, and scenes of the integrator path, are differentiated by random paths, as many per
-/// pixel as the image has samples (core/passes/derivative_images.h), without bias but with noise.
-/// The motion of discontinuities (the edges of shadows and of beams with sharp edges) is not
-/// included. The renderer has the same scene afterwards. Throws UsageError, which says why, for
-/// images whose light is not a sum over paths (forward scatter, snow, exposures with motion, bands
-/// with rays of their own, the paper's output) and for changes of anything else; and as Renderer.
+/// pixel as the image has samples (derivative_images.h), without bias but with noise. The motion of
+/// discontinuities (the edges of shadows and of beams with sharp edges) is not included. The
+/// renderer has the same scene afterwards. Throws UsageError, which says why, for images whose
+/// light is not a sum over paths (forward scatter, snow, exposures with motion, bands with rays of
+/// their own, the paper's output) and for changes of anything else; and as Renderer.
 std::vector<float> scene_derivatives(Renderer& renderer, std::span<const ChangedScene> changes,
                                      const DerivativeOptions& options,
                                      const ProgressCallback& progress);
