@@ -75,7 +75,7 @@ class SkyDivision {
 
 // The cells of all parts together, unless there are more parts: enough for a blur of some degrees,
 // and few enough to add them all up for each ray.
-constexpr int k_cells = 2048;
+constexpr int k_cells_of_sky = 2048;
 
 }  // namespace
 
@@ -107,7 +107,7 @@ SkyParts::SkyParts(const Sky& sky, int count, double water_index)
     weight_sums_ = RectangleSums(q.rows.size(), columns, weights_);
     solid_angles_ = RectangleSums(q.rows.size(), columns, solid_angles);
     const SkyRectangle whole{0, q.rows.size(), 0, columns};
-    cell_solid_angle_ = solid_angles_.of(whole) / k_cells;
+    cell_solid_angle_ = solid_angles_.of(whole) / k_cells_of_sky;
     std::vector<SkyRectangle> rectangles;
     SkyDivision(weight_sums_, q).divide(whole, count, rectangles);
     for (const SkyRectangle& rectangle : rectangles) add_part(rectangle);
