@@ -69,7 +69,8 @@ struct SceneProposal {
 /// The camera that proposals have [pixels, degrees].
 inline constexpr int k_proposed_width = 960, k_proposed_height = 540;
 inline constexpr double k_proposed_fov = 60;
-/// The picture by which a proposal is judged, and that `--picture` shows.
+/// The picture that `--picture` shows. A proposal is judged by it or, in all light, which takes
+/// longer, by one of half its size.
 inline constexpr int k_picture_width = k_proposed_width / 2,
                      k_picture_height = k_proposed_height / 2;
 

@@ -17,8 +17,10 @@
 
 namespace uw::test {
 
-/// Those of assets/scenes that take 15 s each, whatever the size: all light below a wavy surface.
-inline constexpr std::array<std::string_view, 2> k_long_scenes{"harbour.yaml", "sunlit.yaml"};
+/// Those of assets/scenes that take 4 to 15 s each, whatever the size: wavy surfaces, some of them
+/// in all light, and a plume that glows.
+inline constexpr std::array<std::string_view, 4> k_long_scenes{"harbour.yaml", "shallows.yaml",
+                                                               "sunlit.yaml", "vent.yaml"};
 
 /// Renders the scenes of assets/scenes as they are.
 class ExampleScenes : public CliTest {

@@ -1,5 +1,6 @@
 // ctest labels: analytic slow
-// What `uwvdb validate` compares without a scene.
+// What `uwvdb validate` compares without a scene, and the example of uniform water as it is but for
+// its size.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -12,6 +13,15 @@ namespace {
 TEST(ValidationSuite, Passes) {
     ValidateArguments arguments;
     arguments.quiet = true;
+    std::ostringstream out;
+    EXPECT_TRUE(run_validate(arguments, false, out)) << out.str();
+}
+
+TEST(ValidationSuite, PassesOnTheExampleOfUniformWater) {
+    ValidateArguments arguments;
+    arguments.quiet = true;
+    arguments.scene = std::string(UWVDB_SOURCE_DIR) + "/assets/scenes/uniform.yaml";
+    arguments.overrides = {"camera.resolution=[12,7]"};
     std::ostringstream out;
     EXPECT_TRUE(run_validate(arguments, false, out)) << out.str();
 }

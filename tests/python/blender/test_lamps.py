@@ -4,9 +4,10 @@
 from support import *
 
 
-def floor_scene():
-    """A large floor of albedo 0.8 under a camera that looks down from 5 m, a box on it that is turned."""
-    scene = empty_scene()
+def floor_scene(size=(96, 64)):
+    """A large floor of albedo 0.8 under a camera that looks down from 5 m, a box on it that is turned; size in
+    pixels."""
+    scene = empty_scene(*size)
     scene.camera.location, scene.camera.rotation_euler = (0, 0, 5), (0, 0, 0)
     white = material("White")[0]
     floor = square(size=40)
@@ -96,6 +97,10 @@ def test_area_light_is_lambertian():
     close(found, wanted, 1e-3, "irradiance", on_floor)
 
 
+# Where Cycles needs many samples for each of its pixels: what is compared is the median of these.
+FEW_PIXELS = (48, 32)
+
+
 def against_cycles(what, samples=64, tolerance=2e-3, sphere=None):
     """`sphere`: (location, radius) of a light that is one. Cycles has a disk across it instead, which shines
     from there with 1 / (d^2 + r^2): what the sphere does from d is brighter by 1 + (r / d)^2."""
@@ -124,13 +129,13 @@ def test_spot_against_cycles():
 
 
 def test_point_with_a_radius_against_cycles():
-    floor_scene()
+    floor_scene(FEW_PIXELS)
     light("POINT", watts=200, location=(-1.5, 0.7, 2.0), shadow_soft_size=0.3)
     against_cycles("point with a radius", 512, 2e-3, ((-1.5, 0.7, 2.0), 0.3))
 
 
 def test_spot_with_a_radius_against_cycles():
-    floor_scene()
+    floor_scene(FEW_PIXELS)
     light("SPOT", watts=300, location=(-1.5, 0.7, 2.5), rotation=(0.1, -0.5, 0.8), spot_size=1.1,
           spot_blend=0.4, shadow_soft_size=0.2)
     # Its beam has a soft edge, in which eight points are steps.
@@ -145,22 +150,23 @@ def test_sun_against_cycles():
 
 
 def test_rectangle_against_cycles():
-    floor_scene()
+    floor_scene(FEW_PIXELS)
     light("AREA", watts=300, location=(-1.2, 0.6, 1.2), rotation=(0.2, -0.7, 0.9), shape="RECTANGLE",
           size=1.6, size_y=0.2).scale = (1.2, 0.8, 1)
     against_cycles("rectangle", 512, 5e-3)
 
 
 def test_disk_against_cycles():
-    floor_scene()
+    floor_scene(FEW_PIXELS)
     light("AREA", watts=300, location=(-1.2, 0.6, 1.5), rotation=(0.2, -0.7, 0.9), shape="DISK", size=0.6)
     against_cycles("disk", 512, 5e-3)
 
 
 def test_spread_against_cycles():
-    for degrees, samples in ((150, 512), (90, 512), (40, 2048)):  # Blender 4.3 needs more for narrow ones
+    for degrees, samples, size in ((150, 512, FEW_PIXELS), (90, 512, FEW_PIXELS),
+                                   (40, 2048, (72, 48))):  # Blender 4.3 needs more for narrow ones
         for shape in ("DISK", "RECTANGLE"):
-            floor_scene()
+            floor_scene(size)
             light("AREA", watts=300, location=(-0.9, 0.6, 1.7), rotation=(0.1, -0.5, 0.9), shape=shape,
                   size=0.6, size_y=0.3, spread=math.radians(degrees))
             against_cycles(f"{shape.lower()}, spread of {degrees} degrees", samples, 5e-3)
