@@ -12,16 +12,17 @@
 namespace uw::test {
 namespace {
 
-// Ten draws of the noise, and cells of 1 to 10 pixels and between, some of which divide the image;
-// a mosaic's become odd. For each width 80 numbers are to be off by what their covariances say, no
-// more and no less.
+// Ten draws of the noise, and cells of 1 to 10 pixels and between, most of which do not divide the
+// image; a mosaic's become odd. For each width 80 numbers are to be off by what their covariances
+// say, no more and no less.
 TEST_F(FitCells, OfAllWidthsAreOffByTheirErrors) {
     struct Kind {
         std::string mosaic;
         std::vector<double> sides;
     };
     for (const auto& [mosaic, sides] :
-         {Kind{"rggb", {1, 2.5, 5, 8.5}}, Kind{"three", {1, 1.6, 3, 4.6, 8, 10}}}) {
+         {Kind{"rggb", {1, 2.5, 4, 5, 6.5, 8.5, 10}},
+          Kind{"three", {1, 1.6, 2, 3, 3.3, 4, 4.6, 5, 6, 7.5, 8, 9, 10}}}) {
         std::vector<Off> off(sides.size());
         for (int seed = 1; seed <= 10; ++seed) {
             take_noisy_pictures(seed, mosaic);
