@@ -464,26 +464,28 @@ void MultipleScattering::find_matches(double x, double y, const SurfaceHit& hit,
 }
 
 // The surface is too small or too rough for the lattice in the image. Places near by in the world
-// serve as well, with the errors of the nodes around; if there are none, paths are traced for this
-// sample.
+// serve as well, with the errors of the nodes around; if there are none of either, paths are traced
+// for this sample.
 void MultipleScattering::estimate_unmatched(const SurfaceSample& sample, SmoothNode& node) const {
     const SurfaceHit& hit = sample.hit;
+    std::vector<float>& errors = node.surface_errors.diffuse;
+    std::vector<Corner> corners;
+    find_corners(sample.x, sample.y, corners);
+    for (const Corner& corner : corners) {
+        const std::vector<float>& of_corner = corner.node->surface_errors.diffuse;
+        if (corner.node->surface && errors.empty()) errors.assign(bands_, 0.0F);
+        for (std::size_t b = 0; corner.node->surface && b < of_corner.size(); ++b)
+            errors[b] = std::max(errors[b], of_corner[b]);
+    }
     const bool is_glossy = hit.has_material && pixels_.scene().surfaces->material(hit).is_glossy;
-    if (is_glossy || !indirect_->covers(hit, k_max_distance_in_cache * hit.distance)) {
+    if (is_glossy || errors.empty() ||
+        !indirect_->covers(hit, k_max_distance_in_cache * hit.distance)) {
         estimator_.estimate_surface(sample, k_paths_of_sample, node.light, node.surface_errors);
         return;
     }
     std::vector<double> diffuse(indirect_->values());
     indirect_->find(hit, diffuse);
     node.light.diffuse.assign(diffuse.begin(), diffuse.end());
-    node.surface_errors.diffuse.assign(bands_, 0.0F);
-    std::vector<Corner> corners;
-    find_corners(sample.x, sample.y, corners);
-    for (const Corner& corner : corners) {
-        const std::vector<float>& errors = corner.node->surface_errors.diffuse;
-        for (std::size_t b = 0; b < errors.size(); ++b)
-            node.surface_errors.diffuse[b] = std::max(node.surface_errors.diffuse[b], errors[b]);
-    }
 }
 
 void MultipleScattering::add_surface(const SurfaceSample& sample, std::span<const double> to_camera,

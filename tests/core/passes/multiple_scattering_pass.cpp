@@ -109,6 +109,34 @@ TEST_F(MultipleLights, AreAsSharpAsTheSurfacesThatEmit) {
     EXPECT_NEAR(fast, truth, 0.03);
 }
 
+// A wall of steps, each narrower than the nodes are apart and at another distance, so that most
+// pixels see one that no node sees: the light on it is that of steps near by.
+TEST_F(MultipleLights, ReachSurfacesThatNoNodeSees) {
+    desc_ = pinhole_scene(96, 72);
+    desc_.geometry.clear();
+    for (int i = 0; i < 300; ++i) {
+        const double x = -1.8 + 0.012 * i, z = 2 + 0.02 * (i * 37 % 10);
+        desc_.geometry.push_back(box({x, -1.5, z}, {x + 0.012, 1.5, 3}));
+    }
+    desc_.lamps = {isotropic_lamp({-0.5, -0.2, 0}, 40)};
+    desc_.render.scattering = RenderDesc::Scattering::multiple;
+    desc_.render.quality = RenderDesc::Quality::draft;
+    const Film fast = render(desc_);
+    const double fast_error = error_, surfaces = mean(fast, Layer::multiple_surface);
+    SceneDesc paths = desc_;
+    paths.render.integrator = RenderDesc::Integrator::path;
+    paths.render.samples = 32;
+    const Film truth = render(paths);
+    const double all =
+        mean(truth, Layer::multiple) + mean(truth, Layer::direct) + mean(truth, Layer::backscatter);
+    // As in AgreeWithLightPathsInTheMean.
+    const double allowed =
+        all *
+        (4 * std::hypot(error_ / std::sqrt(96.0 * 72), fast_error / std::sqrt(100.0)) + 0.005);
+    EXPECT_NEAR(surfaces, mean(truth, Layer::multiple_surface), allowed);
+    EXPECT_GT(surfaces, 5 * allowed);
+}
+
 TEST_F(MultipleLights, AreDividedAmongTheLamps) {
     const Film film = render(desc_);
     for (int y = 0; y < film.height(); y += 5) {
