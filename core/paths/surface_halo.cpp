@@ -18,6 +18,9 @@ constexpr double k_scales_of_octave = 4;
 constexpr float k_min_weight = 1e-5F;
 // In small images pixels are divided into cells, up to about this number of cells.
 constexpr int k_fine_cells = 130'000;
+// Each channel is blurred in so many tasks, unless there are more channels, whose sums would take
+// much memory.
+constexpr std::size_t k_tasks_of_channel = 2, k_max_split_channels = 8;
 // Cells show the same surface as a pixel if their relative distances differ by less.
 constexpr double k_agreeing_distance = 0.1;
 
@@ -79,42 +82,88 @@ class WaterInView {
     std::vector<Spectrum> per_unit_;
 };
 
-}  // namespace
+/// Returns angles to tabulate [rad], from the smallest of the cells' to the greatest, ascending.
+std::vector<double> table_of(const Grid2D<float>& angles) {
+    float min_angle = std::numeric_limits<float>::max(), max_angle = 0;
+    for (const float angle : angles) {
+        if (!(angle > 0)) continue;
+        min_angle = std::min(min_angle, angle);
+        max_angle = std::max(max_angle, angle);
+    }
+    if (max_angle == 0) min_angle = max_angle = 1;
+    const double octaves = std::log2(max_angle / min_angle);
+    const double last = std::min(std::floor(k_scales_of_octave * octaves) + 1, 255.0);
+    std::vector<double> table;
+    for (double scale = 0; scale <= last; ++scale)
+        table.push_back(min_angle * std::exp2(scale / k_scales_of_octave));
+    return table;
+}
+
+/// Weights of levels of the blur are tabulated by a cell's angle and its surface's distance. This
+/// is where the cells lie in that table, for bilinear interpolation: the entry before each, and how
+/// far it is beyond that.
+struct PlacesInTable {
+    std::vector<int> entry;
+    std::vector<float> beyond_angle, beyond_distance;  // 0..1
+
+    /// A cell without an angle may use any.
+    PlacesInTable(const Grid2D<float>& angles, std::span<const double> table_of_angles,
+                  const Grid2D<float>& cells, std::span<const double> distances) {
+        const double last = static_cast<double>(table_of_angles.size() - 1);
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            const double ratio = std::max(angles[i] / table_of_angles.front(), 1.0);
+            const double scale = std::min(k_scales_of_octave * std::log2(ratio), last - 1e-3);
+            const auto after = std::ranges::upper_bound(distances, cells[i]);
+            const auto d = std::clamp<std::ptrdiff_t>(after - distances.begin() - 1, 0,
+                                                      std::ssize(distances) - 2);
+            const double* at = &distances[static_cast<std::size_t>(d)];
+            entry.push_back(static_cast<int>(scale) * static_cast<int>(distances.size()) +
+                            static_cast<int>(d));
+            beyond_angle.push_back(static_cast<float>(scale - std::floor(scale)));
+            beyond_distance.push_back(
+                static_cast<float>(std::clamp((cells[i] - at[0]) / (at[1] - at[0]), 0.0, 1.0)));
+        }
+    }
+};
+
+// Cells that are no farther than `begin` have no light in what is behind it. No two arrays overlap,
+// which the compiler must know to look up several weights at a time.
+UWVDB_VECTOR_CLONES void weigh_cells(const PlacesInTable& places, const float* __restrict weights,
+                                     std::size_t distances, const float* source, const float* cells,
+                                     float begin, std::size_t count, float* __restrict image) {
+    const int* const entry = places.entry.data();
+    const float* const t = places.beyond_distance.data();
+    const float* const u = places.beyond_angle.data();
+    const float* __restrict const next = weights + distances;
+    for (std::size_t i = 0; i < count; ++i) {
+        const int k = entry[i];
+        const float lower = weights[k] + t[i] * (weights[k + 1] - weights[k]);
+        const float upper = next[k] + t[i] * (next[k + 1] - next[k]);
+        const float weighted = source[i] * (lower + u[i] * (upper - lower));
+        image[i] = cells[i] > begin ? weighted : 0.0F;
+    }
+}
 
 /// Blurs one channel, interval by interval.
-class SurfaceHalo::Spreading {
+class Spreading {
   public:
-    Spreading(const SurfaceHalo& halo, const PointSpread& spread, std::span<const BlurFit> fits)
-        : halo_(halo), spread_(spread), fits_(fits) {}
+    Spreading(const Grid2D<float>& cells, const PlacesInTable& places, const PointSpread& spread,
+              std::span<const BlurFit> fits)
+        : cells_(cells), places_(places), spread_(spread), fits_(fits) {}
 
     /// The light of a channel whose scattering nearest to the camera is in `interval`, by cell.
     /// Valid until the next call.
     const Grid2D<float>& part(std::size_t interval, std::size_t band, double begin,
                               std::span<const float> source) {
-        const Grid2D<Cell>& cells = halo_.cells_;
         find_level_weights(interval, band);
-        pyramid_.begin(cells.width(), cells.height());
+        pyramid_.begin(cells_.width(), cells_.height());
         const std::size_t distances = spread_.distances().size();
         for (std::size_t level = 0; level < levels(); ++level) {
             if (max_weights_[level] < k_min_weight) continue;
-            image_.resize(cells.width(), cells.height());
-            for (std::size_t i = 0; i < cells.size(); ++i) {
-                const Cell& cell = cells[i];
-                if (source[i] == 0 || cell.distance <= begin) {
-                    image_[i] = 0;
-                    continue;
-                }
-                const auto d = static_cast<std::size_t>(cell.place);
-                const auto scale = static_cast<std::size_t>(cell.scale);
-                const float t = cell.place - static_cast<float>(d);
-                const float u = cell.scale - static_cast<float>(scale);
-                const float* weight =
-                    &weights_[(level * halo_.angles_.size() + scale) * distances + d];
-                const float* next = weight + distances;
-                const float lower = weight[0] + t * (weight[1] - weight[0]);
-                const float upper = next[0] + t * (next[1] - next[0]);
-                image_[i] = source[i] * (lower + u * (upper - lower));
-            }
+            image_.resize(cells_.width(), cells_.height());
+            weigh_cells(places_, &weights_[level * fits_.size() * distances], distances,
+                        source.data(), cells_.values().data(), static_cast<float>(begin),
+                        cells_.size(), image_.values().data());
             pyramid_.add(static_cast<int>(level), image_);
         }
         return pyramid_.sum();
@@ -122,12 +171,11 @@ class SurfaceHalo::Spreading {
 
   private:
     std::size_t levels() const {
-        return static_cast<std::size_t>(
-            BlurPyramid::level_count(halo_.cells_.width(), halo_.cells_.height()));
+        return static_cast<std::size_t>(BlurPyramid::level_count(cells_.width(), cells_.height()));
     }
 
     void find_level_weights(std::size_t interval, std::size_t band) {
-        const std::size_t scales = halo_.angles_.size(), distances = spread_.distances().size();
+        const std::size_t scales = fits_.size(), distances = spread_.distances().size();
         weights_.resize(levels() * scales * distances);
         max_weights_.assign(levels(), 0.0F);
         std::vector<double> fitted(levels());
@@ -143,14 +191,17 @@ class SurfaceHalo::Spreading {
         }
     }
 
-    const SurfaceHalo& halo_;
+    const Grid2D<float>& cells_;
+    const PlacesInTable& places_;
     const PointSpread& spread_;
-    std::span<const BlurFit> fits_;  // by scale
+    std::span<const BlurFit> fits_;  // by angle
     BlurPyramid pyramid_;
     Grid2D<float> image_;
-    std::vector<float> weights_;      // by level, scale and distance
+    std::vector<float> weights_;      // by level, angle and distance
     std::vector<float> max_weights_;  // by level
 };
+
+}  // namespace
 
 SurfaceHalo::SurfaceHalo(const RaySource& rays, const LitScene& scene,
                          const SurfaceLighting& lighting, const DistanceIntervals& intervals,
@@ -170,46 +221,43 @@ SurfaceHalo::SurfaceHalo(const RaySource& rays, const LitScene& scene,
     if (scene.field->strata())
         mean_water_ = {water.medium().uniform.total_scattering(),
                        water.medium().uniform.attenuation()};
-    trace(rays, scene, lighting,
-          [&](const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
-              std::span<double> values) {
-              radiance(sample, light, index, values);
-              const Spectrum factors = water.factors(sample.ray, sample.hit.distance);
-              const auto bands = static_cast<std::size_t>(scene.medium->band_count());
-              for (std::size_t c = 0; c < values.size(); ++c) values[c] *= factors[c % bands];
-          });
+    const Grid2D<float> angles =
+        trace(rays, scene, lighting,
+              [&](const SurfaceSample& sample, const SurfaceLight& light, std::size_t index,
+                  std::span<double> values) {
+                  radiance(sample, light, index, values);
+                  const Spectrum factors = water.factors(sample.ray, sample.hit.distance);
+                  const auto bands = static_cast<std::size_t>(scene.medium->band_count());
+                  for (std::size_t c = 0; c < values.size(); ++c) values[c] *= factors[c % bands];
+              });
     double farthest = 0;
-    for (const Cell& cell : cells_)
-        if (std::isfinite(cell.distance))
-            farthest = std::max(farthest, static_cast<double>(cell.distance));
+    for (const float distance : cells_)
+        if (std::isfinite(distance)) farthest = std::max(farthest, static_cast<double>(distance));
     if (farthest == 0) return;
     const PointSpread spread(water.medium(), intervals, farthest);
     intervals_ = spread.interval_count();
     node_light_.assign(nodes.size() * intervals_ * channels_, 0.0F);
-    const std::span<const double> distances = spread.distances();
-    for (Cell& cell : cells_) {
-        const auto after = std::ranges::upper_bound(distances, cell.distance);
-        const auto d =
-            std::clamp<std::ptrdiff_t>(after - distances.begin() - 1, 0, std::ssize(distances) - 2);
-        const double* at = &distances[static_cast<std::size_t>(d)];
-        cell.place =
-            static_cast<float>(d) + static_cast<float>(std::clamp(
-                                        (cell.distance - at[0]) / (at[1] - at[0]), 0.0, 1 - 1e-4));
-    }
+    const std::vector<double> scales = table_of(angles);
+    const PlacesInTable places(angles, scales, cells_, spread.distances());
     const int levels = BlurPyramid::level_count(cells_.width(), cells_.height());
     std::vector<BlurFit> fits;
-    for (const double angle : angles_) fits.emplace_back(levels, angle);
+    for (const double angle : scales) fits.emplace_back(levels, angle);
     const auto bands = static_cast<std::size_t>(scene.medium->band_count());
-    parallel_for(channels_, [&](std::size_t channel) {
+    // A few tasks per channel, by every so many intervals, keep all threads busy.
+    const std::size_t strides = channels_ <= k_max_split_channels ? k_tasks_of_channel : 1;
+    std::vector<Grid2D<float>> sums(channels_ * strides);
+    parallel_for(sums.size(), [&](std::size_t task) {
+        const std::size_t channel = task / strides;
         const auto source = std::span(source_).subspan(channel * cells_.size(), cells_.size());
         if (std::ranges::all_of(source, [](float value) { return value == 0; })) return;
-        Spreading spreading(*this, spread, fits);
+        sums[task].assign(cells_.width(), cells_.height());
+        Spreading spreading(cells_, places, spread, fits);
         std::vector<Corner> corners;
-        for (std::size_t interval = 0; interval < intervals_; ++interval) {
+        for (std::size_t interval = task % strides; interval < intervals_; interval += strides) {
             const double begin = intervals.begin(interval);
             const Grid2D<float>& part = spreading.part(interval, channel % bands, begin, source);
             for (std::size_t i = 0; i < cells_.size(); ++i)
-                if (cells_[i].distance > begin) light_[i * channels_ + channel] += part[i];
+                if (cells_[i] > begin) sums[task][i] += part[i];
             for (std::size_t node = 0; node < nodes.size(); ++node) {
                 find_corners(nodes[node].x, nodes[node].y, corners);
                 double sum = 0;
@@ -219,29 +267,38 @@ SurfaceHalo::SurfaceHalo(const RaySource& rays, const LitScene& scene,
             }
         }
     });
+    for (std::size_t task = 0; task < sums.size(); ++task)
+        for (std::size_t i = 0; i < sums[task].size(); ++i)
+            light_[i * channels_ + task / strides] += sums[task][i];
     source_ = {};
 }
 
-void SurfaceHalo::trace(const RaySource& rays, const LitScene& scene,
-                        const SurfaceLighting& lighting, const Radiance& radiance) {
-    Grid2D<float> angles(cells_.width(), cells_.height());
-    parallel_for(static_cast<std::size_t>(cells_.height()), [&](std::size_t row) {
+// Returns the angle of each cell, 0 where it is unknown.
+Grid2D<float> SurfaceHalo::trace(const RaySource& rays, const LitScene& scene,
+                                 const SurfaceLighting& lighting, const Radiance& radiance) {
+    constexpr int k_rows_of_task = 16;
+    const int width = cells_.width(), height = cells_.height();
+    Grid2D<float> angles(width, height);
+    const auto find_rays = [&](int row, std::vector<std::optional<Ray>>& of_row) {
+        of_row.resize(static_cast<std::size_t>(width) + 1);  // one more: the angle of the last
+        for (int i = 0; i <= width; ++i)
+            of_row[static_cast<std::size_t>(i)] =
+                rays.refracted_ray((i + 0.5) * spacing_, (row + 0.5) * spacing_);
+    };
+    const auto trace_row = [&](int row, const std::vector<std::optional<Ray>>& of_row,
+                               const std::vector<std::optional<Ray>>& below) {
         std::vector<Ray> water_rays;
         std::vector<int> columns;
-        const int j = static_cast<int>(row);
-        const double y = (j + 0.5) * spacing_;
-        for (int i = 0; i < cells_.width(); ++i) {
-            cells_(i, j).distance = std::numeric_limits<float>::infinity();
-            const double x = (i + 0.5) * spacing_;
-            const auto ray = rays.refracted_ray(x, y);
+        for (int i = 0; i < width; ++i) {
+            const auto at = static_cast<std::size_t>(i);
+            cells_(i, row) = std::numeric_limits<float>::infinity();
+            const std::optional<Ray>&ray = of_row[at], &right = of_row[at + 1];
             if (!ray) continue;
             water_rays.push_back(*ray);
             columns.push_back(i);
-            const auto right = rays.refracted_ray(x + spacing_, y);
-            const auto below = rays.refracted_ray(x, y + spacing_);
-            if (right && below)
-                angles(i, j) = static_cast<float>(std::sqrt(glm::length(glm::cross(
-                    right->direction - ray->direction, below->direction - ray->direction))));
+            if (right && below[at])
+                angles(i, row) = static_cast<float>(std::sqrt(glm::length(glm::cross(
+                    right->direction - ray->direction, below[at]->direction - ray->direction))));
         }
         std::vector<SurfaceHit> hits(water_rays.size());
         std::vector<char> found(water_rays.size());
@@ -249,8 +306,9 @@ void SurfaceHalo::trace(const RaySource& rays, const LitScene& scene,
         std::vector<SurfaceSample> samples;
         for (std::size_t k = 0; k < water_rays.size(); ++k) {
             if (!found[k]) continue;
-            cells_(columns[k], j).distance = static_cast<float>(hits[k].distance);
-            samples.push_back({water_rays[k], hits[k], (columns[k] + 0.5) * spacing_, y});
+            cells_(columns[k], row) = static_cast<float>(hits[k].distance);
+            samples.push_back(
+                {water_rays[k], hits[k], (columns[k] + 0.5) * spacing_, (row + 0.5) * spacing_});
         }
         std::vector<const SurfaceSample*> pointers;
         for (const SurfaceSample& sample : samples) pointers.push_back(&sample);
@@ -262,27 +320,23 @@ void SurfaceHalo::trace(const RaySource& rays, const LitScene& scene,
             std::ranges::fill(values, 0.0);
             radiance(samples[sample], light, sample, values);
             ++sample;
-            const std::size_t cell = cells_.index(columns[k], j);
+            const std::size_t cell = cells_.index(columns[k], row);
             for (std::size_t c = 0; c < channels_; ++c)
                 source_[c * cells_.size() + cell] = static_cast<float>(values[c]);
         }
-    });
-    // Tabulates angles from the smallest to the greatest; a cell without one may use any.
-    float min_angle = std::numeric_limits<float>::max(), max_angle = 0;
-    for (const float angle : angles) {
-        if (!(angle > 0)) continue;
-        min_angle = std::min(min_angle, angle);
-        max_angle = std::max(max_angle, angle);
-    }
-    if (max_angle == 0) min_angle = max_angle = 1;
-    const auto place_of = [&](double angle) {
-        return k_scales_of_octave * std::log2(std::max(angle / min_angle, 1.0));
     };
-    const double last = std::min(std::floor(place_of(max_angle)) + 1, 255.0);
-    for (double scale = 0; scale <= last; ++scale)
-        angles_.push_back(min_angle * std::exp2(scale / k_scales_of_octave));
-    for (std::size_t i = 0; i < cells_.size(); ++i)
-        cells_[i].scale = static_cast<float>(std::min(place_of(angles[i]), last - 1e-3));
+    const int tasks = (height + k_rows_of_task - 1) / k_rows_of_task;
+    parallel_for(static_cast<std::size_t>(tasks), [&](std::size_t task) {
+        std::vector<std::optional<Ray>> of_row, below;
+        const int first = static_cast<int>(task) * k_rows_of_task;
+        find_rays(first, of_row);
+        for (int row = first; row < std::min(height, first + k_rows_of_task); ++row) {
+            find_rays(row + 1, below);
+            trace_row(row, of_row, below);
+            std::swap(of_row, below);
+        }
+    });
+    return angles;
 }
 
 void SurfaceHalo::find_corners(double x, double y, std::vector<Corner>& corners) const {
@@ -318,7 +372,7 @@ void SurfaceHalo::add(double x, double y, double distance, double weight,
     find_cells_of_pixel(x, y, cells);
     // Only cells that show the same surface are used, if there are any.
     const auto agrees = [&](const Corner& corner) {
-        const double other = cells_[corner.cell].distance;
+        const double other = cells_[corner.cell];
         return distance < k_far ? std::abs(other - distance) <= k_agreeing_distance * distance
                                 : !std::isfinite(other);
     };

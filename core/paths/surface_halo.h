@@ -61,19 +61,13 @@ class SurfaceHalo {
     void add(double x, double y, double distance, double weight, std::span<double> radiance) const;
 
   private:
-    struct Cell {
-        float distance = 0;  // of the surface [m], infinity if there is none
-        float place = 0;     // among the distances of PointSpread
-        float scale = 0;     // of its angle among the angles
-    };
-    class Spreading;
     struct Corner {
         std::size_t cell;
         double weight;
     };
 
-    void trace(const RaySource& rays, const LitScene& scene, const SurfaceLighting& lighting,
-               const Radiance& radiance);
+    Grid2D<float> trace(const RaySource& rays, const LitScene& scene,
+                        const SurfaceLighting& lighting, const Radiance& radiance);
     void find_corners(double x, double y, std::vector<Corner>& corners) const;
     void find_cells_of_pixel(double x, double y, std::vector<Corner>& cells) const;
 
@@ -83,12 +77,11 @@ class SurfaceHalo {
 
     std::optional<MeanWater> mean_water_;  // none: the water is the same everywhere
     std::size_t channels_ = 0, intervals_ = 0;
-    int cells_of_pixel_ = 1;  // in each direction
-    double spacing_ = 1;      // of the cells [pixels]
-    Grid2D<Cell> cells_;
-    std::vector<double> angles_;  // of cells [rad], ascending
-    std::vector<float> source_;   // by channel and cell
-    std::vector<float> light_;    // by cell and channel
+    int cells_of_pixel_ = 1;     // in each direction
+    double spacing_ = 1;         // of the cells [pixels]
+    Grid2D<float> cells_;        // the distance of the surface [m], infinity if there is none
+    std::vector<float> source_;  // by channel and cell
+    std::vector<float> light_;   // by cell and channel
     std::vector<float> node_light_;
 };
 
