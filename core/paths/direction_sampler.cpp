@@ -85,7 +85,6 @@ DirectionSampler::DirectionSampler(const GuidingTables& tables, const Point3& x,
             total += throughput[band] * b[band];
         scratch_->phase_cumulative.push_back(total);
     }
-    accumulate_guides();
 }
 
 DirectionSampler::DirectionSampler(const GuidingTables& tables, const Ray& ray,
@@ -101,16 +100,6 @@ DirectionSampler::DirectionSampler(const GuidingTables& tables, const Ray& ray,
     scratch_->surface = {ray, hit, 0, 0};
     reflection_.emplace(*tables_->optics.scene().surfaces, scratch_->surface,
                         static_cast<int>(tables_->optics.bands()));
-    accumulate_guides();
-}
-
-void DirectionSampler::accumulate_guides() {
-    scratch_->guide_cumulative.clear();
-    double total = 0;
-    for (const GuidingDistribution::Guide& guide : guides_->all()) {
-        total += guide.irradiance;
-        scratch_->guide_cumulative.push_back(total);
-    }
 }
 
 std::optional<DirectionSample> DirectionSampler::sample(PathRandom& random,
@@ -139,26 +128,13 @@ double DirectionSampler::sample_candidates(PathRandom& random,
     if (scatters &&
         (scratch_->phase_cumulative.empty() || !(scratch_->phase_cumulative.back() > 0)))
         return 0;
-    const std::span<const GuidingDistribution::Guide> guides = guides_->all();
-    const int of_guides = guides.empty() ? 0 : k_direction.candidates_per_technique;
+    const int of_guides = guides_->all().empty() ? 0 : k_direction.candidates_per_technique;
     const int of_local = 2 * k_direction.candidates_per_technique - of_guides;
-    const LampRadianceTable& field = tables_->lamp_radiance;
     for (int k = 0; k < of_guides + of_local; ++k) {
         Scratch::Candidate candidate;
         if (k < of_guides) {
-            double u = (k + u_guide) / of_guides;
-            const GuidingDistribution::Guide& guide =
-                guides[choose(scratch_->guide_cumulative, u).index];
-            const HalfTangentDensity* lobe = &field.lobe(guide.place);
-            if (guide.scattered_once > 0) {
-                u *= 2;
-                if (u >= 1) {
-                    u -= 1;
-                    lobe = &field.phase();
-                }
-            }
-            candidate.direction = direction_around(guide.direction, lobe->sample(u),
-                                                   wrapped(azimuth_guide + k * k_direction.golden));
+            candidate.direction = guides_->sample((k + u_guide) / of_guides,
+                                                  wrapped(azimuth_guide + k * k_direction.golden));
         } else {
             const int i = k - of_guides;
             candidate.direction =
@@ -168,12 +144,13 @@ double DirectionSampler::sample_candidates(PathRandom& random,
         }
         const Vector3& direction = candidate.direction;
         if (!scatters && glm::dot(scratch_->surface.hit.geometric_normal, direction) <= 0) continue;
-        candidate.density = of_local * local_pdf(direction) +
-                            (of_guides > 0 ? of_guides * guide_pdf(direction) : 0);
-        candidate.response = response(direction);
+        const double local = local_pdf(direction);
+        const GuidingDistribution::Towards guide = guides_->towards(direction);
+        candidate.density = of_local * local + of_guides * guide.pdf;
+        candidate.response =
+            scatters ? scratch_->phase_cumulative.back() * local : reflected(direction);
         candidate.of_particles = tables_->particles.along({x_, direction}, k_far);
-        candidate.radiance =
-            guides_->radiance(direction) + candidate.of_particles + expected.ambient;
+        candidate.radiance = guide.radiance + candidate.of_particles + expected.ambient;
         if (expected.of_surface > 0 && glm::dot(expected.normal, direction) < 0)
             candidate.radiance += expected.of_surface;
         if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;
@@ -182,28 +159,8 @@ double DirectionSampler::sample_candidates(PathRandom& random,
     return sum_of_weights(candidates, k_direction.min_relative_radiance);
 }
 
-// The density of the guides' lobes [1/sr]: a sun has two, of which one is for its light that is
-// scattered once.
-double DirectionSampler::guide_pdf(const Vector3& direction) const {
-    const std::span<const double> cumulative = scratch_->guide_cumulative;
-    const LampRadianceTable& field = tables_->lamp_radiance;
-    double sum = 0, before = 0;
-    for (std::size_t j = 0; j < cumulative.size(); ++j) {
-        const GuidingDistribution::Guide& guide = guides_->all()[j];
-        const HalfTangentDensity& lobe = field.lobe(guide.place);
-        const double h = half_tangent_between(guide.direction, direction);
-        double density = lobe.pdf(h);
-        if (guide.scattered_once > 0) density = 0.5 * (density + field.phase().pdf(h));
-        sum += (cumulative[j] - before) * density * per_solid_angle(h);
-        before = cumulative[j];
-    }
-    return sum / before;
-}
-
-// f, summed over the bands with the throughput; for a scattering, by the tables that directions are
-// drawn from.
-double DirectionSampler::response(const Vector3& direction) const {
-    if (!reflection_) return scratch_->phase_cumulative.back() * local_pdf(direction);
+// f of a reflection, summed over the bands with the throughput.
+double DirectionSampler::reflected(const Vector3& direction) const {
     Spectrum values;
     eval(direction, values);
     double sum = 0;

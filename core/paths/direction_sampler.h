@@ -52,7 +52,7 @@ class DirectionSampler {
         };
 
         SurfaceSample surface;
-        std::vector<double> phase_cumulative, guide_cumulative, phase;
+        std::vector<double> phase_cumulative, phase;
         std::vector<Candidate> candidates;
     };
 
@@ -75,13 +75,11 @@ class DirectionSampler {
                                           const ExpectedAtVertex& expected) const;
 
   private:
-    void accumulate_guides();
     double sample_candidates(PathRandom& random, const ExpectedAtVertex& expected) const;
     void eval(const Vector3& direction, Spectrum& values) const;
     Vector3 sample_local(double u, double v, double azimuth) const;
     double local_pdf(const Vector3& direction) const;
-    double guide_pdf(const Vector3& direction) const;
-    double response(const Vector3& direction) const;
+    double reflected(const Vector3& direction) const;
 
     const GuidingTables* tables_;
     const GuidingDistribution* guides_;

@@ -86,6 +86,7 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
                                const Spectrum& weights) {
     tables_ = &tables;
     guides_.clear();
+    cumulative_.clear();
     const WaterOptics& optics = tables.optics;
     const LampRadianceTable& field = tables.lamp_radiance;
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
@@ -123,21 +124,44 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
         const double geometry =
             guided_intensity(lamps[j], -to_lamp) / guided_spread(lamps[j], length);
         guide.irradiance = sum * geometry;
+        cumulative_.push_back((cumulative_.empty() ? 0 : cumulative_.back()) + guide.irradiance);
         guide.scattered_once = scattered_once;
         guide.scale = guide.intensity * guide.place.radius * guide.place.radius * geometry;
     }
 }
 
-double GuidingDistribution::radiance(const Vector3& direction) const {
+// A guide has the lobe of its lamp; a sun has two, of which one is for its light that is scattered
+// once.
+Vector3 GuidingDistribution::sample(double u, double azimuth) const {
+    const Guide& guide = guides_[choose(cumulative_, u).index];
+    const HalfTangentDensity* lobe = &tables_->lamp_radiance.lobe(guide.place);
+    if (guide.scattered_once > 0) {
+        u *= 2;
+        if (u >= 1) {
+            u -= 1;
+            lobe = &tables_->lamp_radiance.phase();
+        }
+    }
+    return direction_around(guide.direction, lobe->sample(u), azimuth);
+}
+
+GuidingDistribution::Towards GuidingDistribution::towards(const Vector3& direction) const {
+    if (guides_.empty()) return {};
     const LampRadianceTable& field = tables_->lamp_radiance;
-    double light = 0;
+    Towards light;
     for (const Guide& guide : guides_) {
         const double h = half_tangent_between(guide.direction, direction);
-        light += guide.scale * field.radiance(guide.place, h);
-        if (guide.scattered_once > 0)
-            light += guide.scattered_once / field.phase().mass() * field.phase().density(h) *
-                     per_solid_angle(h);
+        const double per_h = per_solid_angle(h);
+        light.radiance += guide.scale * field.radiance(guide.place, h);
+        double pdf = field.lobe(guide.place).pdf(h);
+        if (guide.scattered_once > 0) {
+            const double once = field.phase().pdf(h);
+            light.radiance += guide.scattered_once * once * per_h;
+            pdf = 0.5 * (pdf + once);
+        }
+        light.pdf += guide.irradiance * pdf * per_h;
     }
+    light.pdf /= cumulative_.back();
     return light;
 }
 

@@ -56,9 +56,15 @@ class GuidingDistribution {
     void find(const GuidingTables& tables, const Point3& x, const Spectrum& weights);
     std::span<const Guide> all() const { return guides_; }
 
-    /// The radiance that arrives from `direction`, and the part of it that was scattered more than
-    /// once [W m^-2 sr^-1].
-    double radiance(const Vector3& direction) const;
+    /// A direction in about the shape of the radiance. Precondition: there are guides.
+    Vector3 sample(double u, double azimuth) const;
+    /// The radiance that arrives from a direction [W m^-2 sr^-1], and the density of `sample` there
+    /// [1/sr], 0 without guides.
+    struct Towards {
+        double radiance = 0, pdf = 0;
+    };
+    Towards towards(const Vector3& direction) const;
+    /// The part of the radiance that was scattered more than once [W m^-2 sr^-1].
     double multiple(const Vector3& direction) const;
     /// The mean of the radiance at a point `y` near by over the phase function around `direction`:
     /// the source radiance per scattering coefficient.
@@ -67,6 +73,7 @@ class GuidingDistribution {
   private:
     const GuidingTables* tables_ = nullptr;
     std::vector<Guide> guides_;
+    std::vector<double> cumulative_;  // of their irradiances
     std::vector<double> column_;
 };
 

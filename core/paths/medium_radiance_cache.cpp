@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "core/base/parallel.h"
@@ -87,59 +86,41 @@ MediumRadianceCache::MediumRadianceCache(const WaterOptics& optics, const LampRa
     });
 }
 
-double MediumRadianceCache::at(const Point3& x) const {
-    if (cells_.empty()) return 0;
-    std::array<int, 3> i{};
-    for (int axis = 0; axis < 3; ++axis) {
-        const double place = (x[axis] - bounds_.min[axis]) / edge_;
-        const auto a = static_cast<std::size_t>(axis);
-        if (!(place >= 0 && place < count_[a])) return 0;
-        i[a] = static_cast<int>(place);
-    }
-    const Cell& cell =
-        cells_[static_cast<std::size_t>((i[2] * count_[1] + i[1]) * count_[0] + i[0])];
-    return cell.scattering > 0 ? static_cast<double>(cell.light) : 0;
+std::size_t MediumRadianceCache::index_of(const Vector3& place) const {
+    const auto along_axis = [&](int axis) {
+        const int count = count_[static_cast<std::size_t>(axis)];
+        return static_cast<std::size_t>(std::clamp(static_cast<int>(place[axis]), 0, count - 1));
+    };
+    return (along_axis(2) * static_cast<std::size_t>(count_[1]) + along_axis(1)) *
+               static_cast<std::size_t>(count_[0]) +
+           along_axis(0);
 }
 
-// Marches from cell to cell (Amanatides and Woo 1987).
+double MediumRadianceCache::at(const Point3& x) const {
+    if (cells_.empty()) return 0;
+    const Vector3 place = (x - bounds_.min) / edge_;
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(place[axis] >= 0 && place[axis] < count_[static_cast<std::size_t>(axis)])) return 0;
+    return static_cast<double>(cells_[index_of(place)].light);
+}
+
+// Takes a cell's edge at a time, and the cell in the middle of each step.
 double MediumRadianceCache::along(const Ray& ray, double max_distance) const {
     if (cells_.empty()) return 0;
-    Bounds all = bounds_;
-    for (int axis = 0; axis < 3; ++axis)
-        all.max[axis] = all.min[axis] + edge_ * count_[static_cast<std::size_t>(axis)];
-    const Interval part = inside(ray, all);
+    const Interval part = inside(ray, bounds_);
     const double begin = std::max(part.begin, 0.0), end = std::min(part.end, max_distance);
     if (!(end > begin)) return 0;
-    const Point3 entry = ray.at(begin);
-    std::array<int, 3> i{}, step{};
-    std::array<double, 3> next{}, width{};
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        const double place = (entry[axis] - all.min[axis]) / edge_;
-        i[a] = std::clamp(static_cast<int>(place), 0, count_[a] - 1);
-        const double d = ray.direction[axis];
-        step[a] = d < 0 ? -1 : 1;
-        width[a] = d != 0 ? edge_ / std::abs(d) : std::numeric_limits<double>::infinity();
-        next[a] = d != 0 ? begin + ((d < 0 ? i[a] : i[a] + 1) - place) * edge_ / d
-                         : std::numeric_limits<double>::infinity();
-    }
-    double light = 0, transmittance = 1, s = begin;
-    while (transmittance > k_negligible_transmittance) {
-        const std::size_t a =
-            next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
-        const Cell& cell =
-            cells_[static_cast<std::size_t>((i[2] * count_[1] + i[1]) * count_[0] + i[0])];
-        const double length = std::max(0.0, std::min(next[a], end) - s);
+    const double count = std::ceil((end - begin) / edge_), step = (end - begin) / count;
+    Vector3 place = (ray.at(begin + 0.5 * step) - bounds_.min) / edge_;
+    const Vector3 stride = step / edge_ * ray.direction;
+    double light = 0, transmittance = 1;
+    for (double n = 0; n < count && transmittance > k_negligible_transmittance; ++n) {
+        const Cell& cell = cells_[index_of(place)];
         // e^-x is approximated by 1 / (1 + x).
-        const double passed = 1 / (1 + static_cast<double>(cell.attenuation) * length);
-        light +=
-            transmittance * static_cast<double>(cell.scattering * cell.light) * length * passed;
+        const double passed = 1 / (1 + static_cast<double>(cell.attenuation) * step);
+        light += transmittance * static_cast<double>(cell.scattering * cell.light) * step * passed;
         transmittance *= passed;
-        s = next[a];
-        if (!(s < end)) break;
-        i[a] += step[a];
-        if (i[a] < 0 || i[a] >= count_[a]) break;
-        next[a] += width[a];
+        place += stride;
     }
     return light;
 }

@@ -34,6 +34,9 @@ class MediumRadianceCache {
         float light = 0;                        // [W m^-2 sr^-1]
     };
 
+    /// The cell at a place [cells]; the nearest to one outside.
+    std::size_t index_of(const Vector3& place) const;
+
     Bounds bounds_;
     double edge_ = 1;  // of the cells [m]
     std::array<int, 3> count_{};
