@@ -21,6 +21,10 @@ constexpr double k_noise_of_bias = 0.4;
 // What counts is the error of what an eye takes in at a time, which is some nodes across: they
 // share a bias of the widest neighbourhood, but not all of the noise that it takes away.
 constexpr double k_shared_noise = 0.5;
+// A node whose variance is this many times the median of those around it weighs less in their fits,
+// in inverse proportion. Behind a lamp in view, where it is dark, a few bright paths reach some
+// nodes, which would light up all around them and leave a dark ring beyond.
+constexpr float k_usual_variances = 4;
 static_assert(k_scale_radii.back() == k_max_radius &&
               k_smoothing_reach == k_max_radius + static_cast<int>(k_scale_radii.size()) - 1);
 
@@ -90,6 +94,7 @@ class Smoothing {
         return static_cast<std::size_t>(j) * static_cast<std::size_t>(of_.width) +
                static_cast<std::size_t>(i);
     }
+    void limit_weights_of_noise(std::vector<FitNode>& near) const;
     void add(const FitWeight& weight, std::size_t own, Scale& scale) const;
     void compare(const Scale& scale, std::size_t own);
     void move_towards(const Scale& scale, bool is_wide, std::size_t own);
@@ -123,6 +128,7 @@ void Smoothing::fit(const TakesPart& takes_part) {
             if (!near.empty()) break;
         }
         if (brightness > 0) unit_[own] = brightness / weights;
+        limit_weights_of_noise(near);
         LatticeFit fit;
         for (std::size_t k = 0; k < k_scale_radii.size(); ++k) {
             if (!fit.fit(near, k_scale_radii[k])) continue;
@@ -130,6 +136,19 @@ void Smoothing::fit(const TakesPart& takes_part) {
             for (const FitWeight& weight : fit.weights()) add(weight, own, scales_[k]);
         }
     });
+}
+
+void Smoothing::limit_weights_of_noise(std::vector<FitNode>& near) const {
+    if (near.empty()) return;
+    std::vector<float> variances;
+    for (const FitNode& node : near) variances.push_back(of_.variances[node.index]);
+    const auto middle = variances.begin() + static_cast<std::ptrdiff_t>(variances.size() / 2);
+    std::ranges::nth_element(variances, middle);
+    const float usual = k_usual_variances * *middle;
+    if (!(usual > 0)) return;
+    for (FitNode& node : near)
+        if (const float variance = of_.variances[node.index]; variance > usual)
+            node.weight *= static_cast<double>(usual / variance);
 }
 
 void Smoothing::add(const FitWeight& weight, std::size_t own, Scale& scale) const {

@@ -55,7 +55,8 @@ inline constexpr int k_max_neighbourhood = 8, k_smoothing_reach = 12;
 /// the variance that the wider fit takes away, and B^2, the squared bias that it adds, the product
 /// of the changes of both halves, whose noise is independent. B^2 is the median over the nodes next
 /// to each other: a feature is seen by neighbours, too, while what a single node sees, a rare
-/// bright path, is smoothed away, which else would stand as a spot.
+/// bright path, is smoothed away, which else would stand as a spot. Nodes with far more noise than
+/// those around them weigh less in their fits.
 ///
 /// `takes_part(own, other, strictly)`: whether the fit of a node has another; those that take part
 /// less strictly are used where there are no others. `belong(own, other)`: whether two nodes next

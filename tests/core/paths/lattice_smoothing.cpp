@@ -111,6 +111,21 @@ TEST(LatticeSmoothing, GivesBackALonelyBrightNode) {
     EXPECT_NEAR(sum, 5, 8);
 }
 
+TEST(LatticeSmoothing, KeepsTheDarkAroundANodeThatIsAllNoise) {
+    const auto even = [](int, int) { return 1.0; };
+    LatticeLight light = noisy_light(even, 0.1);
+    const std::size_t noisy = light.size() / 2 + k_lattice_size / 2;
+    light.of_node(0, noisy)[0] += 100;
+    light.variances[noisy] = 50 * 50;
+    const SmoothedLight result = smoothed(light);
+    // The node itself has light of its own; three deviations of the others' noise are allowed. With
+    // equal weights others would be too bright, and a ring beyond them too dark.
+    for (std::size_t n = 0; n < light.size(); ++n)
+        if (n != noisy) {
+            ASSERT_NEAR(static_cast<double>(result.light[n]), 1, 0.3) << n;
+        }
+}
+
 TEST(LatticeSmoothing, FillsInWhatANodeDoesNotKnow) {
     const auto plane = [](int i, int j) { return 1 + 0.02 * i + 0.01 * j; };
     LatticeLight light = noisy_light(plane, 1e-4);
