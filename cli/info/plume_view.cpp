@@ -199,7 +199,7 @@ std::string length_text(double length, double size) {
 }
 
 std::string proposal_yaml(const SceneProposal& p) {
-    std::string yaml = "uwvdb: 1\n";
+    std::string yaml = "uwvdb: 2\n";
     yaml += fmt::format(
         "camera:\n  resolution: [{}, {}]\n  intrinsics: {{fov_x: {:g}}}\n"
         "  pose: {{position: {}, look_at: {}}}\n",

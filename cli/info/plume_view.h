@@ -79,7 +79,7 @@ inline constexpr int k_picture_width = k_proposed_width / 2,
 /// so that they light the box and little of the water in front of it.
 SceneProposal propose_scene(const Bounds& bounds);
 
-/// The scene file without its volumes: `uwvdb: 1`, camera, water, geometry and lamps.
+/// The scene file without its volumes: `uwvdb: 2`, camera, water, geometry and lamps.
 std::string proposal_yaml(const SceneProposal& proposal);
 
 /// A length as text: to a thousandth of `size`, however large it is.

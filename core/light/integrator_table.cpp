@@ -81,10 +81,10 @@ const IntegratorKind& integrator_kind(RenderDesc::Integrator integrator) {
 }
 
 RenderDesc::Scattering scattering_of(const RenderDesc& render) {
-    using Scattering = RenderDesc::Scattering;
-    return render.scattering.value_or(integrator_kind(render.integrator).traces_paths
-                                          ? Scattering::multiple
-                                          : Scattering::single);
+    if (render.scattering) return *render.scattering;
+    const IntegratorKind& kind = integrator_kind(render.integrator);
+    if (kind.traces_paths) return RenderDesc::Scattering::multiple;
+    return kind.multiple_scattering ? render.default_scattering : RenderDesc::Scattering::single;
 }
 
 int samples_of(const RenderDesc& render) {

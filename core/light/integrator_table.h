@@ -8,8 +8,9 @@ namespace uw {
 /// users write.
 const IntegratorKind& integrator_kind(RenderDesc::Integrator integrator);
 
-/// Which light is rendered: as requested; by default all light if the integrator traces paths, else
-/// light that is scattered once.
+/// Which light is rendered: as requested; by default all light if the integrator traces paths,
+/// light that is scattered once if it renders no other, and else what the scene's version has by
+/// default.
 RenderDesc::Scattering scattering_of(const RenderDesc& render);
 
 /// The rays per pixel that are requested, or by default those that the integrator needs.

@@ -55,7 +55,9 @@ struct RenderDesc {
     /// Single: light that the water scatters once and light that surfaces reflect once. Multiple:
     /// all light.
     enum class Scattering { single, multiple };
-    std::optional<Scattering> scattering;  ///< if omitted, that of the integrator (scattering_of)
+    std::optional<Scattering> scattering;  ///< if omitted, see scattering_of
+    /// That of the scene's version, for integrators that render both.
+    Scattering default_scattering = Scattering::single;
     SourceLocation scattering_where = "render.scattering";
     PlanesDesc planes;
     /// The quantity that the image contains; all but radiance require the camera's lens.

@@ -24,24 +24,28 @@ namespace uw {
 
 namespace {
 
+constexpr int k_scene_version = 2;
+constexpr const char* k_first_line = "a scene starts with 'uwvdb: 2'";
+
 /// A scene file's name in messages.
 std::string origin_of(const std::filesystem::path& file) {
     return printable(file.string(), 300);
 }
 
-/// Checked first: another version may have other keys.
-void check_version(const ConfigValue& scene) {
+/// The version of the scene's keys and defaults. Read first: another version may have other keys.
+int read_version(const ConfigValue& scene) {
     const ConfigNode* const version = scene.node().find("uwvdb");
-    if (version == nullptr) return;
+    if (version == nullptr) return k_scene_version;  // which is refused as missing
     double number = 0;
     if (version->kind == ConfigNode::Kind::scalar && !version->quoted &&
-        parse_number(version->scalar, number) == NumberText::number && number == 1) {
-        return;
+        parse_number(version->scalar, number) == NumberText::number &&
+        (number == 1 || number == k_scene_version)) {
+        return static_cast<int>(number);
     }
     ConfigValue(*version, "uwvdb")
-        .fail(fmt::format("this program reads scene version 1, found {}; write 'uwvdb: 1', or use "
-                          "the program for that version",
-                          version->description()));
+        .fail(fmt::format("this program reads scene versions 1 and {0}, found {1}; write "
+                          "'uwvdb: {0}', or use the program for that version",
+                          k_scene_version, version->description()));
 }
 
 /// Checks that the scene lacks what a glTF file is to provide, and that a file provides what it
@@ -268,12 +272,12 @@ SceneDesc read_scene_text(std::string_view text, const std::filesystem::path& fi
 SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& file,
                         const SceneArrays* arrays) {
     const ConfigValue scene(root, "");
-    check_version(scene);
+    const int version = read_version(scene);
     ConfigMap map(scene,
                   {"uwvdb", "camera", "cameras", "rig", "water", "volumes", "geometry", "lamps",
                    "sky", "sensors", "render", k_variations_key},
-                  "a scene starts with 'uwvdb: 1'");
-    map.require("uwvdb", "a scene starts with 'uwvdb: 1'");
+                  k_first_line);
+    map.require("uwvdb", k_first_line);
 
     SceneDesc desc;
     desc.file = file;
@@ -293,6 +297,8 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     append_emissions(desc.volumes, desc.lamps);
     if (const auto entry = map.find("sky")) append_sky(*entry, context, desc.lamps);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);
+    desc.render.default_scattering =
+        version == 1 ? RenderDesc::Scattering::single : RenderDesc::Scattering::multiple;
     open_shutter(desc);
     check_lenses(desc);
     complete_sensors(desc);

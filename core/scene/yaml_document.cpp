@@ -430,7 +430,7 @@ ConfigNode parse_yaml(std::string_view text, const std::string& origin, const Ya
     if (!root || root->kind == ConfigNode::Kind::null) {
         source.fail(0, 0,
                     fmt::format("is empty; a {} is a YAML file with content, and a scene starts "
-                                "with 'uwvdb: 1'",
+                                "with 'uwvdb: 2'",
                                 limits.subject));
     }
     return *std::move(root);

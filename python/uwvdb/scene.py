@@ -37,8 +37,9 @@ class Scene(Native[_uwvdb.Scene]):
 
     def __init__(self, *, folder: Path = ".", **sections: Any) -> None:
         """A scene of its sections: camera or cameras and rig, water, volumes, geometry, lamps,
-        render, variations. `folder`: what names of files in them are relative to. Raises
-        InputError."""
+        render, variations. `uwvdb=2` is the version of scene files in which all light is the
+        default; without it, it is 1, and light is scattered once. `folder`: what names of files in
+        the sections are relative to. Raises InputError."""
         self._native = _uwvdb.Scene.of_sections({"uwvdb": 1, **sections},
                                                os.path.join(os.fspath(folder), "scene"))
 

@@ -59,7 +59,7 @@ TEST_F(SceneLoading, ThrowsWhatItsReadersThrow) {
     EXPECT_THROW(load(k_calibrated_scene), InputError);  // there is no rig.yaml
     folder_.write("rig.yaml", "no calibration");
     EXPECT_THROW(load(k_calibrated_scene), InputError);
-    EXPECT_THROW(load("uwvdb: 2\n"), InputError);
+    EXPECT_THROW(load("uwvdb: 3\n"), InputError);
 }
 
 }  // namespace

@@ -5,22 +5,34 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "tests/support/cli_test.h"
 
 namespace uw::test {
 
-/// Those of assets/scenes that take 4 to 15 s each, whatever the size: wavy surfaces, some of them
+/// Those of assets/scenes that take 4 to 15 s each, whatever the size: wavy surfaces, many of them
 /// in all light, and a plume that glows.
-inline constexpr std::array<std::string_view, 4> k_long_scenes{"harbour.yaml", "shallows.yaml",
-                                                               "sunlit.yaml", "vent.yaml"};
+inline constexpr std::array<std::string_view, 7> k_long_scenes{
+    "calm.yaml",     "camera.yaml", "harbour.yaml", "panel.yaml",
+    "shallows.yaml", "sunlit.yaml", "vent.yaml"};
+
+/// The standard error [%] that scenes in all light state of the light in each part of such a small
+/// image, which has few nodes, where it is above the 3 % that the program warns of.
+inline constexpr std::array<std::pair<std::string_view, double>, 9> k_stated_errors{
+    {{"blender.yaml", 5},
+     {"calm.yaml", 12},
+     {"harbour.yaml", 3},
+     {"ies.yaml", 4},
+     {"panel.yaml", 4},
+     {"plume.yaml", 6},
+     {"snow.yaml", 4},
+     {"stratified.yaml", 6},
+     {"sunlit.yaml", 4}}};
 
 /// Renders the scenes of assets/scenes as they are.
 class ExampleScenes : public CliTest {
@@ -44,25 +56,17 @@ class ExampleScenes : public CliTest {
         EXPECT_GE(images, 1) << scene;
     }
 
-    // The standard error [%] of multiple scattering that a scene's first lines state; without one
-    // 0.
-    static double stated_error(const std::filesystem::path& scene) {
-        std::ifstream file(scene);
-        const std::string text(std::istreambuf_iterator<char>(file), {});
-        std::smatch found;
-        return std::regex_search(text, found, std::regex("error of ([0-9]+) %"))
-                   ? std::stod(found[1])
-                   : 0;
-    }
-
-    // Light may be as far off as its scene states, in whole per cent, and the test's images are
+    // Light may be as far off as k_stated_errors says, in whole per cent, and the test's images are
     // wider than some cameras were made for.
     static void expect_no_doubts(const std::string& messages, const std::filesystem::path& scene) {
         const std::string error = "warning: multiple scattering: its standard error is ";
+        const auto stated = std::ranges::find(k_stated_errors, scene.filename().string(),
+                                              &std::pair<std::string_view, double>::first);
+        const double most = stated == k_stated_errors.end() ? 0 : stated->second;
         std::istringstream lines(messages);
         for (std::string line; std::getline(lines, line);) {
             if (line.starts_with(error)) {
-                EXPECT_LT(std::stod(line.substr(error.size())), stated_error(scene) + 0.5)
+                EXPECT_LT(std::stod(line.substr(error.size())), most + 0.5)
                     << scene << ": " << line;
                 continue;
             }

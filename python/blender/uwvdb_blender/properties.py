@@ -20,7 +20,7 @@ class UwvdbScene(bpy.types.PropertyGroup):
         ("PATH", "Path", "All light by random paths, without bias but with noise"),
         ("REFERENCE", "Reference", "Slow and simple, for comparison"),
         ("PLANES", "Planes", "Sum over slabs of uniform water")])
-    scattering: EnumProperty(name="Scattering", default="SINGLE", items=[
+    scattering: EnumProperty(name="Scattering", default="MULTIPLE", items=[
         ("SINGLE", "Single", "Light scattered by the water, or reflected by a surface, once"),
         ("MULTIPLE", "Multiple", "All light, however often it was scattered and reflected")])
     samples: IntProperty(

@@ -36,7 +36,7 @@ def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelle
     to_metres = units.to_metres(scene)
     bands = colours.parse(scene.uwvdb.bands)
     world_from_camera = to_metres @ view.matrix
-    content = {"uwvdb": 1}
+    content = {"uwvdb": 2}
     camera = cameras.describe(depsgraph, view.camera, size, to_metres, world_from_camera, view.shift_x,
                               notes)
     _place_camera(camera, view, world_from_camera, moments)

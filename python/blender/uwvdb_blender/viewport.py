@@ -99,7 +99,7 @@ class Surroundings:
 
     def with_camera(self, camera):
         geometry = {"geometry": self._entries} if self._entries else {}
-        return {"uwvdb": 1, "camera": camera, **self._content, **geometry}
+        return {"uwvdb": 2, "camera": camera, **self._content, **geometry}
 
     def read_on(self, depsgraph):
         """Reads the next of the meshes, so few of them that Blender is not held up."""

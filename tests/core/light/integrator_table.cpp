@@ -54,6 +54,18 @@ TEST(IntegratorTable, PathRendersAllLightAndTheOthersWhatIsRequested) {
     }
 }
 
+TEST(IntegratorTable, ScenesOfVersion2HaveAllLightByTheIntegratorsThatRenderIt) {
+    using Scattering = RenderDesc::Scattering;
+    RenderDesc render;
+    render.default_scattering = Scattering::multiple;
+    for (const auto& [name, integrator] : k_integrator_names) {
+        render.integrator = integrator;
+        const bool renders_all = integrator == Kind::path || integrator == Kind::volume;
+        EXPECT_EQ(scattering_of(render), renders_all ? Scattering::multiple : Scattering::single)
+            << name;
+    }
+}
+
 /// The message of the refusal to render a scene; empty if there is none.
 std::string refusal(const SceneDesc& desc) {
     try {

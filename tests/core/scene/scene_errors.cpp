@@ -11,13 +11,16 @@ TEST_F(SceneErrors, wholeScene) {
     check(
         "",
         {
-            {"camera: {}\n", "scene.yaml:1:1: 'uwvdb' is missing; a scene starts with 'uwvdb: 1'"},
-            {"uwvdb: 2\ncamra: 1\n",
-             "scene.yaml:1:8: uwvdb: this program reads scene version 1, found "
-             "the number 2; write 'uwvdb: 1'"},
+            {"camera: {}\n", "scene.yaml:1:1: 'uwvdb' is missing; a scene starts with 'uwvdb: 2'"},
+            {"uwvdb: 3\ncamra: 1\n",
+             "scene.yaml:1:8: uwvdb: this program reads scene versions 1 and 2, found "
+             "the number 3; write 'uwvdb: 2'"},
             {"uwvdb: '1'\n",
-             "scene.yaml:1:8: uwvdb: this program reads scene version 1, found the "
+             "scene.yaml:1:8: uwvdb: this program reads scene versions 1 and 2, found the "
              "quoted text '1'"},
+            {"uwvdb: 1.5\n",
+             "scene.yaml:1:8: uwvdb: this program reads scene versions 1 and 2, found the "
+             "number 1.5"},
             {"uwvdb: 1\n", "scene.yaml:1:1: 'camera' is missing; give camera:"},
             {"uwvdb: 1\ncamra: {}\n", "scene.yaml:2:1: camra: unknown key; did you mean 'camera'?"},
             {"uwvdb: 1\nfoo: {}\n",

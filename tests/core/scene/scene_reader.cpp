@@ -79,6 +79,24 @@ void expect_vector(const Vector3& found, const Vector3& expected, double toleran
 constexpr std::string_view k_minimal =
     "uwvdb: 1\ncamera: {resolution: [400, 300], intrinsics: {fov_x: 90}}\n";
 
+TEST_F(SceneReader, takesAllLightOfVersion2UnlessItIsSingle) {
+    using Scattering = RenderDesc::Scattering;
+    constexpr std::string_view k_camera =
+        "camera: {resolution: [4, 4], intrinsics: {fx: 4}}\nrender: {samples: 1}\n";
+    const auto render_of = [&](const std::string& version, const std::string& scattering) {
+        std::vector<std::string> overrides;
+        if (!scattering.empty()) overrides.push_back("render.scattering=" + scattering);
+        return read_scene_text("uwvdb: " + version + "\n" + std::string(k_camera), "scene.yaml",
+                               overrides)
+            .render;
+    };
+    EXPECT_EQ(render_of("1", "").default_scattering, Scattering::single);
+    EXPECT_EQ(render_of("2", "").default_scattering, Scattering::multiple);
+    EXPECT_FALSE(render_of("2", "").scattering);
+    for (const char* version : {"1", "2"})
+        EXPECT_EQ(render_of(version, "single").scattering, Scattering::single) << version;
+}
+
 TEST_F(SceneReader, readsTheCamera) {
     const CameraDesc camera = read_full().camera;
     EXPECT_EQ(camera.width, 1920);

@@ -24,6 +24,7 @@ def empty_scene(width=96, height=64):
     bpy.context.preferences.addons["uwvdb_blender"].preferences.program = PROGRAM
     scene = bpy.context.scene
     scene.render.engine = "UWVDB"
+    scene.uwvdb.scattering = "SINGLE"  # it is quick; tests of all light ask for it
     scene.render.resolution_x, scene.render.resolution_y = width, height
     scene.render.resolution_percentage = 100
     scene.view_settings.view_transform = "Raw"

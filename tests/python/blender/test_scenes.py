@@ -162,7 +162,9 @@ def test_says_what_single_scattering_leaves_out():
     render()
     told = [note for note in notes() if note.startswith("single scattering leaves out")]
     assert len(told) == 1 and "Render > uwvdb > Scattering: Multiple renders it" in told[0], notes()
-    scene.uwvdb.scattering, scene.uwvdb.quality = "MULTIPLE", "DRAFT"
+    scene.uwvdb.property_unset("scattering")
+    assert scene.uwvdb.scattering == "MULTIPLE"
+    scene.uwvdb.quality = "DRAFT"
     render()
     assert not any("leaves out" in note for note in notes()), notes()
 
@@ -435,7 +437,7 @@ def test_scenes_are_kept_for_other_commands():
         ours = render(frame=7)["Combined"]
         place = f"{folder}/0007_ViewLayer"
         scene_text = json.loads(pathlib.Path(place, "scene.yaml").read_text())
-        assert scene_text["uwvdb"] == 1 and len(scene_text["lamps"]) == 1
+        assert scene_text["uwvdb"] == 2 and len(scene_text["lamps"]) == 1
         uwvdb("render", "scene.yaml", "-o", "image.exr", "--compression", "none", "--precision", "float",
               folder=place)
         again = sys.modules["uwvdb_blender.exr"].read(f"{place}/image.exr").get("", "RGBA")
