@@ -5,11 +5,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/geometry/mesh.h"
@@ -270,6 +276,103 @@ TEST(ImageReader, RefusesOtherImagesThatAreDamaged) {
             EXPECT_TRUE(message.starts_with(name + ": ")) << message;
             EXPECT_EQ(message.find('\n'), std::string::npos);
         }
+    }
+}
+
+/// A Photoshop document of 4 x 3 pixels of three planes, 0 to 11, 12 to 23 and 24 to 35, in the
+/// format's large form (PSB) or the usual one, and where its lengths of parts stand.
+struct Psd {
+    std::string bytes;
+    struct Length {
+        std::size_t at, size;
+    };
+    std::vector<Length> lengths;
+
+    explicit Psd(bool is_large) {
+        bytes = "8BPS";
+        number(is_large ? 2 : 1, 2);
+        bytes.append(6, '\0');
+        number(3, 2);  // channels
+        number(3, 4);  // rows
+        number(4, 4);  // columns
+        number(8, 2);  // bits
+        number(3, 2);  // RGB
+        length(0, 4);  // the palette
+        // Two resources of kinds that nobody knows: 4 bytes, then a name, 3 bytes and one to an
+        // even number.
+        length(4 + 2 + 2 + 4 + 4 + (4 + 2 + 4 + 4 + 4), 4);
+        bytes += "8BIM";
+        number(4000, 2);
+        number(0, 2);  // no name
+        length(4, 4);
+        number(0, 4);
+        bytes += "8BIM";
+        number(4001, 2);
+        bytes += "\003abc";
+        length(3, 4);
+        number(0, 4);
+        length(0, is_large ? 8 : 4);  // the layers
+        number(0, 2);                 // not compressed
+        for (char value = 0; value < 36; ++value) bytes += value;
+    }
+    void number(std::uint64_t value, std::size_t size) {
+        for (std::size_t byte = size; byte-- > 0;)
+            bytes += static_cast<char>(value >> (8 * byte) & 0xffU);
+    }
+    void length(std::uint64_t value, std::size_t size) {
+        lengths.push_back({bytes.size(), size});
+        number(value, size);
+    }
+};
+
+TEST(ImageReader, RefusesPhotoshopDocumentsThatClaimMoreThanTheyHold) {
+    const auto message = [](const std::string& bytes) {
+        return test::message_of<InputError>([&] { read_image(encoded_bytes(bytes), "x.psd"); });
+    };
+    for (const bool is_large : {false, true}) {
+        const Psd whole(is_large);
+        const PixelImage image = read_image(encoded_bytes(whole.bytes), "x.psd");
+        ASSERT_EQ(image.pixels.size(), 36U);
+        for (std::size_t pixel = 0; pixel < 12; ++pixel)
+            for (std::size_t plane = 0; plane < 3; ++plane)
+                EXPECT_EQ(std::lround(image.pixels[3 * pixel + plane] * 255),
+                          static_cast<long>(12 * plane + pixel));
+        ASSERT_EQ(whole.lengths.size(), 5U);
+        for (const auto& [at, size] : whole.lengths)
+            // By one, 2 GB and 4 GB.
+            for (const std::uint64_t length :
+                 {std::uint64_t{whole.bytes.size() - at - size + 1}, std::uint64_t{0x7fffffff},
+                  std::uint64_t{0xffffff01}}) {
+                std::string bytes = whole.bytes;
+                for (std::size_t byte = 0; byte < size; ++byte)
+                    bytes[at + byte] = static_cast<char>(length >> (8 * (size - 1 - byte)) & 0xffU);
+                EXPECT_EQ(message(bytes),
+                          "x.psd: cannot read the PSD image: a part of it is longer than the file; "
+                          "save it again, or as PNG")
+                    << at << ' ' << length;
+            }
+        // A thumbnail (1036) in place of the first resource, of fewer bytes than its header has.
+        Psd thumbnail = whole;
+        thumbnail.bytes.replace(whole.lengths[2].at - 4, 2, "\x04\x0c");
+        EXPECT_NE(message(thumbnail.bytes).find("its thumbnail is shorter"), std::string::npos);
+        // RGB and Lab of one or two channels, CMYK of three.
+        for (const auto& [mode, channels] : {std::pair{3, 1}, {3, 2}, {9, 2}, {4, 3}}) {
+            std::string bytes = whole.bytes;
+            bytes[13] = static_cast<char>(channels);
+            bytes[25] = static_cast<char>(mode);
+            EXPECT_NE(message(bytes).find("fewer channels than its colours need"),
+                      std::string::npos);
+        }
+        // Nine compressed rows, of which the last one says that it is longer than what follows.
+        std::string compressed = whole.bytes;
+        compressed.resize(compressed.size() - 36);
+        compressed.back() = 1;
+        for (int row = 0; row < 9; ++row) {
+            if (is_large) compressed += std::string(2, row == 8 ? '\xff' : '\0');
+            compressed += std::string{'\0', row == 8 ? '\xff' : '\1'};
+        }
+        compressed += std::string(36, '\0');
+        EXPECT_NE(message(compressed).find("a part of it is longer"), std::string::npos);
     }
 }
 
