@@ -25,9 +25,9 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render plume.yaml --numbers - --object seabed
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
 
-render.scattering: single, the default, is light that the water scatters once or a surface reflects
-once; multiple is all light, however often it was scattered and reflected, fast by
---integrator volume, unbiased by path.
+render.scattering: multiple, the default of scenes with uwvdb: 2, is all light, however often it
+was scattered and reflected, fast by --integrator volume, unbiased by path; single is light that the
+water scatters once or a surface reflects once.
 
 Writes OUT.exr (the image and its depth; more with --layers) and OUT.png beside it, a preview; with
 -o OUT.png the preview alone: 8 or 16 bits of what is to be seen, not the light itself. So do .jpg
