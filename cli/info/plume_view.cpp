@@ -232,6 +232,9 @@ constexpr int k_max_drafts = 8, k_max_pictures = 3;  // of one water and one kin
 // Multiple scattering has the same nodes in a picture of half the size, in which the contrast is
 // within some 1 % of that in the whole one.
 constexpr int k_judged_width = k_picture_width / 2;
+// Of a volume that fewer pixels see, such as a wire, the brightest hundredth is a handful of
+// pixels, and half the size shows others.
+constexpr double k_min_seen_at_half_size = 0.05;
 constexpr std::array k_waters{"jerlov-II", "jerlov-IB"};
 
 /// Counts the drafts for the progress display.
@@ -349,8 +352,7 @@ PlumeView view_in(const char* water, const VolumeDesc& volume, const Bounds& bou
     std::optional<Drafts> drafts(std::in_place, view.proposal, volume, k_draft_width,
                                  Scattering::single, count);
     view.draft = drafts->at(1);
-    const bool is_small = view.draft.seen < k_min_seen;
-    if (is_small) {
+    if (view.draft.seen < k_min_seen) {
         drafts.emplace(view.proposal, volume, k_fine_draft_width, Scattering::single, count);
         view.draft = drafts->at(1);
     }
@@ -358,8 +360,9 @@ PlumeView view_in(const char* water, const VolumeDesc& volume, const Bounds& bou
     count.next("the light that single scattering leaves out");
     view.left_out = drafts->light_left_out(view.factor);
     // The scene is judged by its picture, which depends on the light.
+    const bool is_narrow = view.draft.seen < k_min_seen_at_half_size;
     drafts.emplace(view.proposal, volume,
-                   view.needs_all_light() && !is_small ? k_judged_width : k_picture_width,
+                   view.needs_all_light() && !is_narrow ? k_judged_width : k_picture_width,
                    view.needs_all_light() ? Scattering::multiple : Scattering::single, count);
     view.draft = drafts->at(view.factor);
     if (view.needs_all_light()) improve(*drafts, k_max_pictures, view.factor, view.draft);
