@@ -811,13 +811,13 @@ void write_scene(const std::filesystem::path& file, bool is_sequence, VdbAdvice&
         "#   uwvdb render scene.yaml{1}\n",
         name, is_sequence ? " --frames FIRST-LAST" : "");
     advice.scene += proposal_yaml(advice.view.proposal) + advice.volumes;
-    advice.scene += "render:\n";
-    advice.scene +=
-        advice.view.needs_all_light()
-            ? fmt::format(
-                  "  scattering: multiple    # single leaves out about {:.0f} % of the light\n",
-                  100 * advice.view.left_out->fraction)
-            : "  scattering: single      # which leaves out hardly any light here\n";
+    std::string scattering = "single";
+    if (advice.view.needs_all_light())
+        scattering = fmt::format("multiple    # single leaves out about {:.0f} % of the light",
+                                 100 * advice.view.left_out->fraction);
+    else if (advice.view.left_out)
+        scattering += "      # which leaves out hardly any light here";
+    advice.scene += fmt::format("render:\n  scattering: {}\n", scattering);
     if (advice.fps) advice.scene += fmt::format("  fps: {:.6g}\n", *advice.fps);
 }
 
