@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "core/base/error.h"
@@ -92,6 +93,9 @@ void place_lamps(const SceneDesc& desc, AssembledScene& scene) {
             const std::vector<EmissivePart> parts = merged((emissive++)->volume->parts, thinning);
             scene.lamps.push_back(make_lamp(lamp, parts));
             append_emitters(scene.lamps.back(), scene.lamps.size() - 1, parts, scene.emitters);
+            if (scattering_of(desc.render) == RenderDesc::Scattering::multiple)
+                for (Lamp& emitter : std::span(scene.emitters).subspan(first))
+                    emitter = emitter.met_by_paths();
             if (scene.water_surface)
                 append_mirror_images(*scene.water_surface, first, scene.emitters);
             continue;

@@ -41,6 +41,8 @@ class Lamp {
     Lamp brightened(double factor) const;
     /// Its mirror image (MirroredEmitter). Precondition: it has a position.
     Lamp mirrored(const WaterSurface& surface) const;
+    /// The same emitter, which represents an emissive volume that light paths meet.
+    Lamp met_by_paths() const;
     /// The same sun, focused by waves (FocusedEmitter): its light has the same irradiance on a
     /// level plane. Precondition: it is a sun.
     Lamp focused(std::shared_ptr<const SunFocus> focus) const;
@@ -60,6 +62,10 @@ class Lamp {
     /// Whether it is one of several that represent parts of a luminous surface or of a sun's disc:
     /// its shadows are soft (origin_on_patch). A lamp that consists of one point casts hard ones.
     bool is_part() const { return fraction_ < 1 && emitter_->patch(); }
+
+    /// Whether it represents an emissive volume only where it lights surfaces: the water's light is
+    /// found by paths that meet the volume itself (EmissionSampler), as in all light.
+    bool is_met_by_paths() const { return is_met_by_paths_; }
 
     /// @name The functions of its emitter, which has their descriptions
     /// @{
@@ -102,6 +108,7 @@ class Lamp {
     Spectrum axis_intensity_;
     std::size_t index_;
     double fraction_;
+    bool is_met_by_paths_ = false;
 };
 
 }  // namespace uw

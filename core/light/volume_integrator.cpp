@@ -274,8 +274,11 @@ VolumeIntegrator::VolumeIntegrator(const LitScene& scene,
       sum_(*scene.medium) {
     const AttenuationTable& c = sum_.attenuation();
     const auto bands = static_cast<std::size_t>(c.band_count);
-    for (std::size_t j = 0; j < scene.emitters->size(); ++j)
-        if ((*scene.emitters)[j].is_focused() ? part.focused : part.even) emitters_.push_back(j);
+    for (std::size_t j = 0; j < scene.emitters->size(); ++j) {
+        const Lamp& emitter = (*scene.emitters)[j];
+        if (emitter.is_met_by_paths()) continue;
+        if (emitter.is_focused() ? part.focused : part.even) emitters_.push_back(j);
+    }
     max_attenuation_ = c.uniform.greatest(bands);
     min_attenuation_ = c.uniform.least(bands);
     for (const Spectrum& constituent : c.constituents)

@@ -15,6 +15,8 @@ struct DirectionOptions {
     /// Candidates of each technique: in the shape of f, and in that of the lamps' light. Without
     /// lamps, all are of the first.
     int candidates_per_technique = 3;
+    /// Candidates of a scattering towards the light of emissive volumes, where there are any.
+    int candidates_of_emission = 2;
     /// The probability with which a direction on a glossy surface is drawn from its specular lobe.
     double specular_probability = 0.5;
     /// No candidate's radiance is expected to be less than this, relative to the candidates' mean:
@@ -109,7 +111,7 @@ std::optional<DirectionSample> DirectionSampler::sample(PathRandom& random,
     const Scratch::Candidate& chosen = choose_candidate(scratch_->candidates, u * sum);
     DirectionSample sample{.direction = chosen.direction,
                            .weight = {},
-                           .radiance = chosen.radiance,
+                           .radiance = std::max(0.0, chosen.radiance - chosen.emitted),
                            .of_particles = chosen.of_particles};
     eval(chosen.direction, sample.weight);
     const double factor = sum / (chosen.response * chosen.radiance);
@@ -130,9 +132,19 @@ double DirectionSampler::sample_candidates(PathRandom& random,
         return 0;
     const int of_guides = guides_->all().empty() ? 0 : k_direction.candidates_per_technique;
     const int of_local = 2 * k_direction.candidates_per_technique - of_guides;
-    for (int k = 0; k < of_guides + of_local; ++k) {
+    const EmissionSampler& emission = tables_->emission;
+    const bool is_lit = scatters && !emission.empty();
+    const int of_emission = is_lit ? k_direction.candidates_of_emission : 0;
+    const double u_emission = is_lit ? random.next() : 0, v_emission = is_lit ? random.next() : 0,
+                 w_emission = is_lit ? random.next() : 0;
+    for (int k = -of_emission; k < of_guides + of_local; ++k) {
         Scratch::Candidate candidate;
-        if (k < of_guides) {
+        if (k < 0) {
+            candidate.direction =
+                emission.sample(x_, (-1 - k + u_emission) / of_emission,
+                                wrapped(v_emission - k * k_direction.golden),
+                                wrapped(w_emission - k * k_direction.golden * k_direction.golden));
+        } else if (k < of_guides) {
             candidate.direction = guides_->sample((k + u_guide) / of_guides,
                                                   wrapped(azimuth_guide + k * k_direction.golden));
         } else {
@@ -146,11 +158,16 @@ double DirectionSampler::sample_candidates(PathRandom& random,
         if (!scatters && glm::dot(scratch_->surface.hit.geometric_normal, direction) <= 0) continue;
         const double local = local_pdf(direction);
         const GuidingDistribution::Towards guide = guides_->towards(direction);
-        candidate.density = of_local * local + of_guides * guide.pdf;
+        const EmissionSampler::Towards emitted =
+            is_lit ? emission.towards({x_, direction}) : EmissionSampler::Towards{};
+        candidate.density =
+            of_local * local + of_guides * guide.pdf + of_emission * emitted.pdf;
         candidate.response =
             scatters ? scratch_->phase_cumulative.back() * local : reflected(direction);
         candidate.of_particles = tables_->particles.along({x_, direction}, k_far);
         candidate.radiance = guide.radiance + candidate.of_particles + expected.ambient;
+        candidate.emitted = emitted.radiance;
+        candidate.radiance += emitted.radiance;
         if (expected.of_surface > 0 && glm::dot(expected.normal, direction) < 0)
             candidate.radiance += expected.of_surface;
         if (!(candidate.density > 0) || !(candidate.weight() > 0)) continue;

@@ -24,7 +24,9 @@ struct ExpectedAtVertex {
 struct DirectionSample {
     Vector3 direction{0, 0, 1};
     Spectrum weight;  // f over the probability density, by which the throughput is to be multiplied
-    double radiance = 0;      // expected from there, mean over the bands with the throughput
+    // Expected from there, mean over the bands with the throughput; without what emissive volumes
+    // send without an event on the way.
+    double radiance = 0;
     double of_particles = 0;  // MediumRadianceCache's part of it
 };
 
@@ -49,6 +51,7 @@ class DirectionSampler {
         struct Candidate : ResamplingCandidate {
             Vector3 direction{0, 0, 1};
             double of_particles = 0;  // as in DirectionSample
+            double emitted = 0;       // of the radiance: what needs no event on the way
         };
 
         SurfaceSample surface;

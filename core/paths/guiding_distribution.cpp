@@ -59,19 +59,21 @@ double guided_depth(const Lamp& lamp, double depth) {
     return std::max(depth, lamp.sunlight() ? k_guide_min_depth_of_sun : k_guide_min_depth);
 }
 
-double guided_spread(const Lamp& lamp, double distance) {
-    return lamp.spread(std::max(distance, k_guide_min_radius));
+double guided_spread(const GuidingTables& tables, const Lamp& lamp, double distance) {
+    return tables.spread(lamp, std::max(distance, k_guide_min_radius));
 }
 
 }  // namespace
 
 GuidingTables::GuidingTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
-                             const NextEventEstimator& of_lamps)
+                             const NextEventEstimator& of_lamps,
+                             const EmissionSampler& of_emission)
     : optics(of_optics),
       scattering(of_scattering),
       lamps(of_lamps),
       lamp_radiance(of_scattering.lamp_radiance()),
-      particles(of_optics, lamp_radiance, of_lamps) {
+      emission(of_emission),
+      particles(of_optics, lamp_radiance, of_lamps, of_emission) {
     const auto sum = [](const OpticalCoefficients& coefficients) {
         Spectrum all;
         for (const Spectrum& b : coefficients.scattering) all += b;
@@ -80,6 +82,16 @@ GuidingTables::GuidingTables(const WaterOptics& of_optics, const ScatteringTable
     uniform_scattering = sum(optics.scene().medium->uniform);
     for (const Constituent& constituent : optics.scene().medium->constituents)
         constituents_scattering.push_back(sum(constituent.per_unit));
+}
+
+Point3 GuidingTables::origin(const Lamp& lamp, const Point3& x) const {
+    return lamp.is_met_by_paths() && !lamp.is_mirrored() ? emission.sphere(lamp.index()).centre
+                                                         : lamp.origin(x);
+}
+
+double GuidingTables::spread(const Lamp& lamp, double radius) const {
+    return lamp.spread(radius) +
+           (lamp.is_met_by_paths() ? emission.sphere(lamp.index()).square : 0);
 }
 
 void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
@@ -95,11 +107,11 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
     if (!(all > 0)) return;
     column_.resize(optics.constituents());
     for (std::size_t j = 0; j < lamps.size(); ++j) {
-        const Vector3 to_lamp = lamps[j].origin(x) - x;
+        const Vector3 to_lamp = tables.origin(lamps[j], x) - x;
         const double length = glm::length(to_lamp);
         if (!(length > 0)) continue;
         tables.lamps.column_to_lamp(j, x, column_);
-        double sum = 0, tau = 0, albedo = 0, scattered_once = 0;
+        double sum = 0, tau = 0, albedo = 0, scattered_once = 0, emitted = 0;
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             const Depth depth(tables, b, length, column_);
             const double weight = weights[b] / all * lamps[j].axis_intensity()[b] *
@@ -107,6 +119,8 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
             sum += weight;
             tau += weight * depth.tau;
             albedo += weight * depth.albedo;
+            if (lamps[j].is_met_by_paths())
+                emitted += weights[b] / all * lamps[j].axis_intensity()[b];
             if (lamps[j].sunlight())
                 scattered_once += weights[b] / all * lamps[j].axis_intensity()[b] *
                                   std::exp(-depth.tau) * depth.tau * depth.albedo;
@@ -122,10 +136,11 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
         guide.place = field.at(guided_depth(lamps[j], depth), guide.albedo);
         guide.intensity = sum / field.flux(guide.place);
         const double geometry =
-            guided_intensity(lamps[j], -to_lamp) / guided_spread(lamps[j], length);
+            guided_intensity(lamps[j], -to_lamp) / guided_spread(tables, lamps[j], length);
         guide.irradiance = sum * geometry;
         cumulative_.push_back((cumulative_.empty() ? 0 : cumulative_.back()) + guide.irradiance);
         guide.scattered_once = scattered_once;
+        guide.emitted = emitted;
         guide.scale = guide.intensity * guide.place.radius * guide.place.radius * geometry;
     }
 }
@@ -168,9 +183,11 @@ GuidingDistribution::Towards GuidingDistribution::towards(const Vector3& directi
 double GuidingDistribution::multiple(const Vector3& direction) const {
     const LampRadianceTable& field = tables_->lamp_radiance;
     double light = 0;
-    for (const Guide& guide : guides_)
-        light += guide.scale *
-                 field.multiple(guide.place, half_tangent_between(guide.direction, direction));
+    for (const Guide& guide : guides_) {
+        const double h = half_tangent_between(guide.direction, direction);
+        light += guide.scale * (guide.emitted > 0 ? field.radiance(guide.place, h)
+                                                  : field.multiple(guide.place, h));
+    }
     return light;
 }
 
@@ -179,13 +196,17 @@ double GuidingDistribution::source(const Point3& y, const Vector3& direction) co
     double light = 0;
     for (const Guide& guide : guides_) {
         const Lamp& lamp = (*tables_->optics.scene().emitters)[guide.lamp];
-        const Vector3 to_lamp = lamp.origin(y) - y;
+        const Vector3 to_lamp = tables_->origin(lamp, y) - y;
         const double length = std::max(glm::length(to_lamp), 1e-9);
+        const double h = half_tangent_between(to_lamp / length, direction);
+        const double spread = guided_spread(*tables_, lamp, length);
         const LampRadianceTable::Place place =
             field.at(guided_depth(lamp, length * guide.attenuation), guide.albedo);
         light += guide.intensity * guided_intensity(lamp, -to_lamp) * place.radius * place.radius /
-                 guided_spread(lamp, length) *
-                 field.source(place, half_tangent_between(to_lamp / length, direction));
+                 spread * field.source(place, h);
+        if (guide.emitted > 0)
+            light += guide.emitted * std::exp(-length * guide.attenuation) / spread *
+                     field.phase().pdf(h) * per_solid_angle(h);
     }
     return light;
 }

@@ -6,6 +6,7 @@
 
 #include "core/base/ray.h"
 #include "core/base/spectrum.h"
+#include "core/paths/emission_sampler.h"
 #include "core/paths/lamp_radiance_table.h"
 #include "core/paths/medium_radiance_cache.h"
 #include "core/paths/next_event_estimator.h"
@@ -20,6 +21,7 @@ struct GuidingTables {
     const ScatteringTables& scattering;
     const NextEventEstimator& lamps;
     const LampRadianceTable& lamp_radiance;  // made once, so that look-ups take no lock
+    const EmissionSampler& emission;
     // b by band, summed over the phase functions: of the uniform water, and of the constituents per
     // unit.
     Spectrum uniform_scattering;
@@ -28,7 +30,12 @@ struct GuidingTables {
     MediumRadianceCache particles;
 
     GuidingTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
-                  const NextEventEstimator& of_lamps);
+                  const NextEventEstimator& of_lamps, const EmissionSampler& of_emission);
+
+    /// Where the light that reaches `x` comes from, and what its irradiance is divided by at the
+    /// distance `radius`; those of an emissive volume that paths meet are its sphere's.
+    Point3 origin(const Lamp& lamp, const Point3& x) const;
+    double spread(const Lamp& lamp, double radius) const;
 };
 
 /// Estimates the radiance of the lamps at a point by direction (path guiding: Vorba and Krivanek
@@ -49,6 +56,9 @@ class GuidingDistribution {
         // The irradiance by a sun's light that the water scatters once, by any angle. Its radiance
         // has the shape of the phase function around the sun's direction. 0 for all other lamps.
         double scattered_once = 0;
+        // Of an emissive volume that paths meet: the intensity, of which the direct light is part
+        // of what they find there. 0 for all other lamps.
+        double emitted = 0;
         LampRadianceTable::Place place;
     };
 
@@ -64,7 +74,8 @@ class GuidingDistribution {
         double radiance = 0, pdf = 0;
     };
     Towards towards(const Vector3& direction) const;
-    /// The part of the radiance that was scattered more than once [W m^-2 sr^-1].
+    /// The part of the radiance that was scattered more than once, or once by the light of an
+    /// emissive volume: what next-event estimation does not find [W m^-2 sr^-1].
     double multiple(const Vector3& direction) const;
     /// The mean of the radiance at a point `y` near by over the phase function around `direction`:
     /// the source radiance per scattering coefficient.

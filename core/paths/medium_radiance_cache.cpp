@@ -21,7 +21,8 @@ constexpr double k_negligible_transmittance = 0.02;
 }  // namespace
 
 MediumRadianceCache::MediumRadianceCache(const WaterOptics& optics, const LampRadianceTable& field,
-                                         const NextEventEstimator& lamps)
+                                         const NextEventEstimator& lamps,
+                                         const EmissionSampler& emission)
     : bounds_(optics.scene().field->grids().bounds()) {
     const Vector3 extent = bounds_.empty() ? Vector3(0) : bounds_.max - bounds_.min;
     if (optics.constituents() == 0 || !(extent.x > 0 && extent.y > 0 && extent.z > 0)) return;
@@ -68,7 +69,12 @@ MediumRadianceCache::MediumRadianceCache(const WaterOptics& optics, const LampRa
         double light = 0;
         for (std::size_t j = 0; j < all.size(); ++j) {
             const Point3 origin = all[j].origin(x);
-            const double radius = std::max(glm::length(x - origin), 0.5 * edge_);
+            double radius = std::max(glm::length(x - origin), 0.5 * edge_);
+            if (all[j].is_met_by_paths()) {
+                const EmissionSampler::Sphere& sphere = emission.sphere(all[j].index());
+                const Vector3 way = x - sphere.centre;
+                radius = std::sqrt(glm::dot(way, way) + sphere.square);
+            }
             const double relative =
                 std::max(all[j].relative_intensity(x - origin), k_relative_beyond_beam);
             if (scene.surfaces->occluded(origin, x)) continue;

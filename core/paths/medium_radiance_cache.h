@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/base/ray.h"
+#include "core/paths/emission_sampler.h"
 #include "core/paths/lamp_radiance_table.h"
 #include "core/paths/next_event_estimator.h"
 #include "core/paths/path_segment.h"
@@ -18,7 +19,7 @@ class MediumRadianceCache {
   public:
     /// Remains empty without particles. Uses `lamps` only during construction.
     MediumRadianceCache(const WaterOptics& optics, const LampRadianceTable& field,
-                        const NextEventEstimator& lamps);
+                        const NextEventEstimator& lamps, const EmissionSampler& emission);
 
     bool empty() const { return cells_.empty(); }
     /// The mean radiance over all directions at a point within the particle field; 0 elsewhere [W

@@ -101,6 +101,7 @@ void InScatterSampler::prepare(const WaterOptics& optics, const ScatteringTables
     };
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
+        if (lamps[j].is_met_by_paths()) continue;
         const Interval lit = lamps[j].beam(segment.ray, {0, segment.length});
         if (!(lit.length() > 0)) continue;
         LampPassage passage = lamps[j].passage(segment.ray);

@@ -38,6 +38,7 @@ struct PathContribution {
     int scatterings = 0;           // in the water, on the way
     int reflections = 0;           // by surfaces
     bool from_water = false;       // it was last scattered by the water, not reflected or emitted
+    bool is_met = false;           // light of an emissive volume that the path met on its way
     double distance = 0;           // from the ray's origin to where that happened [m]
     /// Estimate of the radiance, one value per band of the scene [W m^-2 sr^-1].
     std::span<const double> radiance;
@@ -79,6 +80,7 @@ struct PathState {
     ExpectedLight expected;  // of the pixel, with what the path has found on its way
     int scatterings = 0, reflections = 0;
     bool from_water = false;      // its first vertex, seen from the camera, is a scattering
+    bool was_scattered = false;   // its last vertex is a scattering
     bool stays_in_water = false;  // surfaces end it, and it leaves out what they emit and reflect
     double distance = 0;          // of the first vertex, along the camera ray [m]
     double splitting = 1;         // the product of its splitting factors

@@ -7,12 +7,13 @@
 namespace uw {
 
 PathTables::PathTables(const LitScene& scene, const ScatteringTables& tables,
+                       const EmissionSampler& emission,
                        std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                        std::vector<std::size_t> emitters)
     : optics(scene, /*exact=*/deep_shadows.empty()),
       scattering(tables),
       lamps(optics, scattering, std::move(deep_shadows), std::move(emitters)),
-      guides(optics, scattering, lamps) {
+      guides(optics, scattering, lamps, emission) {
     for (const Lamp& lamp : *scene.emitters) light += lamp.axis_intensity();
     for (std::size_t b = 0; b < optics.bands(); ++b) {
         const auto include = [&](const OpticalCoefficients& coefficients) {

@@ -7,6 +7,7 @@
 #include "core/base/spectrum.h"
 #include "core/light/integrator.h"
 #include "core/light/lamp.h"
+#include "core/paths/emission_sampler.h"
 #include "core/paths/guiding_distribution.h"
 #include "core/paths/next_event_estimator.h"
 #include "core/paths/path_segment.h"
@@ -38,6 +39,7 @@ struct PathTables {
     /// `scene`: with one emitter per lamp. `deep_shadows` and `emitters`: see NextEventEstimator.
     /// What is referred to must outlive this object.
     PathTables(const LitScene& scene, const ScatteringTables& tables,
+               const EmissionSampler& emission,
                std::vector<std::shared_ptr<const DeepShadow>> deep_shadows,
                std::vector<std::size_t> emitters);
     PathTables(const PathTables&) = delete;

@@ -98,6 +98,7 @@ PathTracer::PathTracer(const LitScene& scene,
                        std::shared_ptr<const ScatteringTables> scattering)
     : scattering_(scattering ? std::move(scattering)
                              : std::make_shared<const ScatteringTables>(*scene.medium)),
+      emission_(scene),
       views_(lamp_views(*scene.emitters)) {
     for (const LampView& view : views_) {
         LitScene seen = scene;
@@ -107,7 +108,7 @@ PathTracer::PathTracer(const LitScene& scene,
             for (const std::size_t emitter : view.emitters)
                 of_view.push_back(deep_shadows[emitter]);
         tables_.push_back(
-            std::make_unique<PathTables>(seen, *scattering_, std::move(of_view), view.emitters));
+            std::make_unique<PathTables>(seen, *scattering_, emission_, std::move(of_view), view.emitters));
     }
 }
 

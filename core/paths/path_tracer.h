@@ -8,6 +8,7 @@
 #include "core/base/random.h"
 #include "core/geometry/surfaces.h"
 #include "core/light/integrator.h"
+#include "core/paths/emission_sampler.h"
 #include "core/paths/path_walk.h"
 
 namespace uw {
@@ -77,8 +78,8 @@ class PathTracer {
                         PathScratch& scratch) const;
     /// Whether a contribution of trace_surface is one of trace_mirrored.
     static bool is_mirrored(const PathContribution& contribution) {
-        return contribution.scatterings + contribution.reflections ==
-               (contribution.lamp == k_no_lamp ? 1 : 2);
+        return !contribution.is_met && contribution.scatterings + contribution.reflections ==
+                                           (contribution.lamp == k_no_lamp ? 1 : 2);
     }
 
   private:
@@ -93,6 +94,7 @@ class PathTracer {
     void weigh_intervals(std::span<const double> surface_light, CameraSegment& segment) const;
 
     std::shared_ptr<const ScatteringTables> scattering_;
+    EmissionSampler emission_;
     std::vector<LampView> views_;
     std::vector<std::unique_ptr<const PathTables>> tables_;  // one per view
 };

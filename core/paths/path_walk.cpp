@@ -307,6 +307,7 @@ DirectionSampler PathWalk::add_scattering(PathState& state, const Ray& ray, cons
                                           GuidingDistribution& guides) {
     const Point3 x = ray.at(point.distance);
     ++state.scatterings;
+    state.was_scattered = true;
     add_vertex(state, PathVertex::Kind::scattered, x);
     guides.find(tables_.guides, x, state.throughput);
     return {tables_.guides, x, ray.direction, point, state.throughput, guides, scratch_.directions};
@@ -315,6 +316,7 @@ DirectionSampler PathWalk::add_scattering(PathState& state, const Ray& ray, cons
 DirectionSampler PathWalk::add_reflection(PathState& state, const Ray& ray, const SurfaceHit& hit,
                                           GuidingDistribution& guides) {
     ++state.reflections;
+    state.was_scattered = false;
     add_vertex(state, PathVertex::Kind::reflected, hit.position, &hit);
     guides.find(tables_.guides, hit.position, state.throughput);
     return {tables_.guides, ray, hit, state.throughput, guides, scratch_.directions};
@@ -358,6 +360,10 @@ double PathWalk::water_surface_reflectance(const WaterSegment& segment) const {
 void PathWalk::estimate_next_event(PathState& state, const PathSegment& segment) {
     const WaterSegment& water = segment.water;
     tables_.lamps.estimate_in_scatter(water, state, random_, sink_, scratch_.next_event);
+    // Emission that lights a surface is that of emitters (estimate_direct_light).
+    if (state.was_scattered)
+        tables_.guides.emission.estimate(tables_.optics, water, state, random_, sink_,
+                                         scratch_.emission);
     if (!water.has_hit || state.stays_in_water || meets_water_surface(water)) return;
     add_surface_light(state, water, segment.transmittance);
 }

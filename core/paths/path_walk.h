@@ -45,6 +45,7 @@ struct PathScratch {
     GuidingDistribution guides_in_mirror;
     std::vector<double> cumulative, indirect, column;
     NextEventScratch next_event;
+    EmissionSampler::Scratch emission;
     // For preparing a camera ray, beside the point:
     std::vector<LampPassage> passages;  // of the lamps
     std::vector<double> guided, plain;
