@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <span>
 #include <utility>
 
 #include "core/base/error.h"
@@ -35,6 +36,11 @@ std::size_t count_of(const AssembledScene& scene, std::size_t lamp) {
     }));
 }
 
+bool is_met_by_paths(const AssembledScene& scene, std::size_t lamp) {
+    const auto emitter = std::ranges::find(scene.emitters, lamp, &Lamp::index);
+    return emitter != scene.emitters.end() && emitter->is_met_by_paths();
+}
+
 /// Returns the emitters of the pointed lamps, `times` as many of each.
 std::vector<Lamp> pointed_emitters(const AssembledScene& scene, std::size_t times) {
     std::vector<Lamp> emitters;
@@ -55,6 +61,9 @@ std::vector<Lamp> pointed_emitters(const AssembledScene& scene, std::size_t time
         const EmissiveVolume& volume = *(emissive++)->volume;
         append_emitters(scene.lamps[i], i, divide_emission(*volume.field, volume.emission, count),
                         emitters);
+        if (is_met_by_paths(scene, i))
+            for (Lamp& emitter : std::span(emitters).subspan(first))
+                emitter = emitter.met_by_paths();
         if (scene.water_surface) append_mirror_images(*scene.water_surface, first, emitters);
     }
     return emitters;
@@ -149,6 +158,7 @@ class PointLight {
             const Point3 x = segment.ray.at(s);
             for (std::size_t j = 0; j < emitters_.size(); ++j) {
                 const Lamp& lamp = emitters_[j];
+                if (lamp.is_met_by_paths()) continue;
                 const LampPassage passage = lamp.passage(segment.ray);
                 double radius = passage.radius(s);
                 if (!(radius > 0) || lamp.contains(radius)) continue;

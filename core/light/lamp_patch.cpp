@@ -1,6 +1,7 @@
 #include "core/light/lamp_patch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -17,7 +18,7 @@ constexpr int k_points_along = 8;  // for a patch's mean and covariance, to 2 % 
 // Inverts the cumulative distribution of a sphere's light: returns the r/R within which a fraction
 // `inside` of it is emitted. With r = R sin t, the light within r is proportional to t - sin t cos
 // t, whose derivative is 2 sin^2 t.
-double sphere_radius(double inside) {
+double invert_sphere_radius(double inside) {
     const double wanted = 0.5 * std::numbers::pi * inside;
     double low = 0, high = 0.5 * std::numbers::pi;
     double t = std::min(std::cbrt(1.5 * wanted), high);
@@ -29,6 +30,22 @@ double sphere_radius(double inside) {
         t = next > low && next < high ? next : 0.5 * (low + high);
     }
     return std::sin(t);
+}
+
+// The same, to 1e-6, by a table over the cube root of `inside`, which makes it smooth at 0.
+double sphere_radius(double inside) {
+    constexpr std::size_t k_count = 1024;
+    static const std::array<double, k_count + 1> table = [] {
+        std::array<double, k_count + 1> radii{};
+        for (std::size_t i = 0; i <= k_count; ++i) {
+            const double root = static_cast<double>(i) / k_count;
+            radii[i] = invert_sphere_radius(root * root * root);
+        }
+        return radii;
+    }();
+    const double place = std::cbrt(std::clamp(inside, 0.0, 1.0)) * k_count;
+    const auto i = std::min(static_cast<std::size_t>(place), k_count - 1);
+    return std::lerp(table[i], table[i + 1], place - static_cast<double>(i));
 }
 
 Vector3 in_sphere(double radius, const UnitPoint& place) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/parallel.h"
 #include "core/light/half_tangent_density.h"
@@ -21,8 +22,10 @@ struct EmissionCellOptions {
     /// The emission that is assumed of a dark cell beside a lit one, relative to that: the places
     /// may have missed a flame's edge, and what shines where nothing is expected would be lost.
     float at_edge = 0.02F;
-    /// Samples per segment and volume.
-    int samples = 2;
+    /// Of the lattice of EmissionSampler::mean, along each axis, and the directions of a mean.
+    int means_along = 16, directions = 20;
+    /// Places in the light from which its escape is judged.
+    int escapes = 256;
 };
 constexpr EmissionCellOptions k_emission_cells;
 
@@ -68,6 +71,13 @@ void cross(const Ray& ray, const Bounds& bounds, const Vector3& edge,
     }
 }
 
+// `count` directions, evenly spread: a golden spiral.
+Vector3 spiral_direction(int i, int count) {
+    const double cosine = 1 - 2 * (i + 0.5) / count, sine = std::sqrt(1 - cosine * cosine);
+    const double azimuth = 2 * std::numbers::pi * i / std::numbers::phi;
+    return {sine * std::cos(azimuth), sine * std::sin(azimuth), cosine};
+}
+
 // Beyond this optical depth, light on a segment is not looked for by its cells' masses: e^-20.
 constexpr double k_max_depth_of_emission = 20;
 
@@ -82,8 +92,10 @@ EmissionSampler::EmissionSampler(const LitScene& scene) {
         spheres_.resize(std::max(spheres_.size(), emission.lamp + 1));
         if (volume.lit.empty()) continue;
         spheres_[emission.lamp] = sphere_of(volume);
+        spheres_[emission.lamp].escaping = escaping_fraction(volume);
         volumes_.push_back(std::move(volume));
     }
+    if (!empty()) fill_means(scene);
 }
 
 EmissionSampler::Volume EmissionSampler::make_volume(const LitScene& scene,
@@ -200,6 +212,65 @@ EmissionSampler::Sphere EmissionSampler::sphere_of(const Volume& volume) const {
     return {volume.bounds.min + mean, std::max(0.0, square / sum - glm::dot(mean, mean))};
 }
 
+double EmissionSampler::escaping_fraction(const Volume& volume) {
+    const auto across = static_cast<std::size_t>(volume.count[0]);
+    const auto down = static_cast<std::size_t>(volume.count[1]);
+    double sum = 0;
+    for (int i = 0; i < k_emission_cells.escapes; ++i) {
+        const double target = (i + 0.5) / k_emission_cells.escapes * volume.power;
+        const auto chosen = std::min(
+            static_cast<std::size_t>(std::ranges::upper_bound(volume.cumulative, target) -
+                                     volume.cumulative.begin()),
+            volume.lit.size() - 1);
+        const std::size_t n = volume.lit[chosen];
+        const Point3 x = volume.bounds.min +
+                         volume.edge * Vector3(static_cast<double>(n % across) + 0.5,
+                                               static_cast<double>(n / across % down) + 0.5,
+                                               static_cast<double>(n / across / down) + 0.5);
+        double depth = 0;
+        // Every direction is as good as any other: neighbours in the list take very different ones.
+        const int scattered = i * 89 % k_emission_cells.escapes;
+        cross({x, spiral_direction(scattered, k_emission_cells.escapes)}, volume.bounds, volume.edge,
+              volume.count, k_far, [&](std::size_t cell, double begin, double end) {
+                  depth += static_cast<double>(volume.cells[cell].attenuation) * (end - begin);
+                  return depth < k_max_depth_of_emission;
+              });
+        sum += std::exp(-depth);
+    }
+    return sum / k_emission_cells.escapes;
+}
+
+void EmissionSampler::fill_means(const LitScene& scene) {
+    means_bounds_ = scene.field->grids().bounds();
+    if (means_bounds_.empty()) return;
+    const auto along = static_cast<std::size_t>(k_emission_cells.means_along);
+    const Vector3 edge = (means_bounds_.max - means_bounds_.min) / static_cast<double>(along);
+    means_.resize(along * along * along);
+    parallel_for(means_.size(), [&](std::size_t n) {
+        const Point3 x = means_bounds_.min +
+                         edge * Vector3(static_cast<double>(n % along) + 0.5,
+                                        static_cast<double>(n / along % along) + 0.5,
+                                        static_cast<double>(n / along / along) + 0.5);
+        double sum = 0;
+        for (int i = 0; i < k_emission_cells.directions; ++i)
+            sum += towards({x, spiral_direction(i, k_emission_cells.directions)}).radiance;
+        means_[n] = static_cast<float>(sum / k_emission_cells.directions);
+    });
+}
+
+double EmissionSampler::mean(const Point3& x) const {
+    if (means_.empty()) return 0;
+    const int along = k_emission_cells.means_along;
+    const Vector3 place = (x - means_bounds_.min) /
+                          (means_bounds_.max - means_bounds_.min) * static_cast<double>(along);
+    std::size_t n = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+        if (!(place[axis] >= 0 && place[axis] < along)) return 0;
+        n = n * static_cast<std::size_t>(along) + static_cast<std::size_t>(place[axis]);
+    }
+    return static_cast<double>(means_[n]);
+}
+
 // The irradiance at x of the volume's light as a sphere in clear water, about.
 double EmissionSampler::weight(const Volume& volume, const Point3& x) const {
     const Sphere& sphere = spheres_[volume.lamp];
@@ -298,31 +369,23 @@ void EmissionSampler::estimate(const WaterOptics& optics, const WaterSegment& se
                   return depth < k_max_depth_of_emission;
               });
         if (!(all > 0)) continue;
-        Spectrum sum;
-        double place = 0;
-        for (int k = 0; k < k_emission_cells.samples; ++k) {
-            double target = (k + u) / k_emission_cells.samples * all;
-            std::size_t i = 0;
-            while (i + 1 < w.pieces.size() && target >= w.pieces[i].mass)
-                target -= w.pieces[i++].mass;
-            const Scratch::Piece& piece = w.pieces[i];
-            const double s =
-                piece.begin + std::clamp(target / piece.mass, 0.0, 1.0) * piece.length;
-            place = s;
-            double value = 0;
-            volume.light->field->sample(segment.ray.at(s), std::span(&value, 1));
-            if (!(value > 0)) continue;
-            const Spectrum emitted = volume.light->emission.of(value);
-            optics.look_up(segment, s, w.point);
-            Spectrum transmittance;
-            optics.transmittances(s, w.point.column, transmittance);
-            const double over_pdf = all * piece.length / (piece.mass * k_emission_cells.samples);
-            for (std::size_t b = 0; b < bands; ++b)
-                sum[b] += state.throughput[b] * transmittance[b] * emitted[b] * over_pdf;
-        }
-        PathContribution contribution = state.contribution(volume.lamp, sum.first(bands));
+        double target = u * all;
+        std::size_t i = 0;
+        while (i + 1 < w.pieces.size() && target >= w.pieces[i].mass) target -= w.pieces[i++].mass;
+        const Scratch::Piece& piece = w.pieces[i];
+        const double s = piece.begin + std::clamp(target / piece.mass, 0.0, 1.0) * piece.length;
+        double value = 0;
+        volume.light->field->sample(segment.ray.at(s), std::span(&value, 1));
+        if (!(value > 0)) continue;
+        Spectrum radiance = volume.light->emission.of(value), transmittance;
+        optics.look_up(segment, s, w.point);
+        optics.transmittances(s, w.point.column, transmittance);
+        const double pdf = piece.mass / (all * piece.length);
+        for (std::size_t b = 0; b < bands; ++b)
+            radiance[b] *= state.throughput[b] * transmittance[b] / pdf;
+        PathContribution contribution = state.contribution(volume.lamp, radiance.first(bands));
         contribution.is_met = true;
-        contribution.place = segment.ray.at(place);
+        contribution.place = segment.ray.at(s);
         sink.add(contribution);
     }
 }

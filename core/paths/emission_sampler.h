@@ -33,11 +33,11 @@ class EmissionSampler {
 
     bool empty() const { return volumes_.empty(); }
 
-    /// A volume as a sphere, for guiding: where its light is, and the mean square distance of that
-    /// from its centre [m^2].
+    /// A volume as a sphere, for guiding: where its light is, the mean square distance of that from
+    /// its centre [m^2], and the fraction of it that leaves the volume's bounds without an event.
     struct Sphere {
         Point3 centre;
-        double square = 0;
+        double square = 0, escaping = 0;
     };
     /// That of the lamp with this index. Precondition: it is a volume that paths meet.
     const Sphere& sphere(std::size_t lamp) const { return spheres_[lamp]; }
@@ -51,6 +51,9 @@ class EmissionSampler {
         double radiance = 0, pdf = 0;
     };
     Towards towards(const Ray& ray) const;
+    /// The mean over all directions of the radiance that arrives at `x` without an event on the way,
+    /// for guiding: that around the centre of a coarse cell of the particles' bounds, 0 elsewhere.
+    double mean(const Point3& x) const;
 
     /// Memory in which `estimate` works.
     struct Scratch {
@@ -86,11 +89,15 @@ class EmissionSampler {
     static Volume make_volume(const LitScene& scene, const SceneEmission& emission);
     static void fill_cells(const LitScene& scene, Volume& volume);
     static void add_faint_edge(Volume& volume);
+    static double escaping_fraction(const Volume& volume);
+    void fill_means(const LitScene& scene);
     Sphere sphere_of(const Volume& volume) const;
     double weight(const Volume& volume, const Point3& x) const;
 
     std::vector<Volume> volumes_;
     std::vector<Sphere> spheres_;  // by lamp
+    Bounds means_bounds_;
+    std::vector<float> means_;  // in a lattice of k_means_along cells along each axis, x fastest
 };
 
 }  // namespace uw

@@ -110,17 +110,23 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
         const Vector3 to_lamp = tables.origin(lamps[j], x) - x;
         const double length = glm::length(to_lamp);
         if (!(length > 0)) continue;
-        tables.lamps.column_to_lamp(j, x, column_);
+        const bool is_met = lamps[j].is_met_by_paths();
+        // What leaves an emissive volume crosses the water alone.
+        if (is_met)
+            std::ranges::fill(column_, 0.0);
+        else
+            tables.lamps.column_to_lamp(j, x, column_);
+        const double escaping = is_met ? tables.emission.sphere(lamps[j].index()).escaping : 1;
         double sum = 0, tau = 0, albedo = 0, scattered_once = 0, emitted = 0;
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             const Depth depth(tables, b, length, column_);
-            const double weight = weights[b] / all * lamps[j].axis_intensity()[b] *
+            const double intensity = escaping * lamps[j].axis_intensity()[b];
+            const double weight = weights[b] / all * intensity *
                                   field.flux(field.at(depth.tau, depth.albedo));
             sum += weight;
             tau += weight * depth.tau;
             albedo += weight * depth.albedo;
-            if (lamps[j].is_met_by_paths())
-                emitted += weights[b] / all * lamps[j].axis_intensity()[b];
+            if (is_met) emitted += weights[b] / all * intensity;
             if (lamps[j].sunlight())
                 scattered_once += weights[b] / all * lamps[j].axis_intensity()[b] *
                                   std::exp(-depth.tau) * depth.tau * depth.albedo;

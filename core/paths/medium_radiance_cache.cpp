@@ -68,13 +68,9 @@ MediumRadianceCache::MediumRadianceCache(const WaterOptics& optics, const LampRa
         if (!(scattering > 0)) return;
         double light = 0;
         for (std::size_t j = 0; j < all.size(); ++j) {
+            if (all[j].is_met_by_paths()) continue;
             const Point3 origin = all[j].origin(x);
-            double radius = std::max(glm::length(x - origin), 0.5 * edge_);
-            if (all[j].is_met_by_paths()) {
-                const EmissionSampler::Sphere& sphere = emission.sphere(all[j].index());
-                const Vector3 way = x - sphere.centre;
-                radius = std::sqrt(glm::dot(way, way) + sphere.square);
-            }
+            const double radius = std::max(glm::length(x - origin), 0.5 * edge_);
             const double relative =
                 std::max(all[j].relative_intensity(x - origin), k_relative_beyond_beam);
             if (scene.surfaces->occluded(origin, x)) continue;
@@ -87,8 +83,8 @@ MediumRadianceCache::MediumRadianceCache(const WaterOptics& optics, const LampRa
                                                    std::max(medium.uniform.attenuation(b), 1e-9)));
             }
         }
-        cell.light =
-            static_cast<float>(light / (4 * std::numbers::pi * static_cast<double>(bands)));
+        cell.light = static_cast<float>(
+            light / (4 * std::numbers::pi * static_cast<double>(bands)) + emission.mean(x));
     });
 }
 
