@@ -38,7 +38,6 @@ struct PathContribution {
     int scatterings = 0;           // in the water, on the way
     int reflections = 0;           // by surfaces
     bool from_water = false;       // it was last scattered by the water, not reflected or emitted
-    bool is_met = false;           // light of an emissive volume that the path met on its way
     double distance = 0;           // from the ray's origin to where that happened [m]
     /// Estimate of the radiance, one value per band of the scene [W m^-2 sr^-1].
     std::span<const double> radiance;
@@ -51,6 +50,7 @@ struct PathContribution {
     // What light that was scattered once was computed with, by constituent: the columns of its
     // whole way [unit m], and the concentrations at `place` [unit]. If empty, they are the field's.
     std::span<const double> columns{}, concentration{};
+    bool is_met = false;  // light of an emissive volume, which lies on the path's way at `place`
 };
 
 /// Receives the contributions of paths one by one. Their sum is an unbiased estimate.

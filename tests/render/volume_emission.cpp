@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/light/emission.h"
+#include "tests/support/film_rendering.h"
 #include "tests/support/temp_dir.h"
 #include "tests/support/test_scene.h"
 #include "tests/support/vdb/vdb_fixtures.h"
@@ -285,9 +286,9 @@ TEST(Emission, AreInEquilibriumInAFurnace) {
 }
 
 // Where such a gas scatters, too, a = 2 and b = 1 per metre, what is not scattered is a / c = 2/3
-// of the blackbody, and what is scattered once, isotropically, b / c of that. Points bring less of
-// the latter, the fewer they are: docs/scene-file.md tells how much.
-TEST(Emission, AreTooDarkInAFurnaceThatScatters) {
+// of the blackbody, and what is scattered once, isotropically, b / c of that. In single scattering
+// points bring less of the latter, the fewer they are, as docs/scene-file.md says.
+TEST(Emission, AreTooDarkInAFurnaceThatScattersOnce) {
     const EmissiveFixture fixture;
     VdbFixture grid;
     grid.name = "flame";
@@ -314,6 +315,82 @@ TEST(Emission, AreTooDarkInAFurnaceThatScatters) {
     EXPECT_NEAR(direct, 2.0 / 3, 3e-3);
     EXPECT_NEAR(scattered, 0.017, 0.001);
     EXPECT_LT(scattered, 2.0 / 9);
+}
+
+/// The mean over an image of what is not direct, in one band, and its standard error.
+struct MeanLight {
+    double light = 0, error = 0;
+};
+
+MeanLight scattered_light(SceneDesc desc, RenderDesc::Integrator integrator, int samples) {
+    desc.render.scattering = RenderDesc::Scattering::multiple;
+    desc.render.integrator = integrator;
+    desc.render.samples = samples;
+    const RenderedFilm image(desc);
+    const int width = image.film().width(), height = image.film().height();
+    MeanLight mean;
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double error = image.value(Layer::error, x, y, 0) / (width * height);
+            mean.error += error * error;
+        }
+    mean.error = std::sqrt(mean.error);
+    mean.light = (image.sum(Layer::backscatter, 0) + image.sum(Layer::multiple, 0)) /
+                 (width * height);
+    return mean;
+}
+
+/// A furnace of voxels around the camera: a gas that absorbs, emits and scatters, 24 optical depths
+/// wide, in clear water. Its radiance is 1, of which a / c = 2/3 is direct.
+SceneDesc scattering_furnace(const EmissiveFixture& fixture) {
+    VdbFixture grid;
+    grid.name = "flame";
+    grid.min = {0, 0, 0};
+    grid.max = {19, 19, 19};
+    grid.value = [](int, int, int) { return 1.0; };
+    grid.file_from_index = Affine::translation({-1.9, -1.9, -1.9}) * Affine::scale(Vector3(0.2));
+    VolumeDesc volume = fixture.volume(grid);
+    GridMappingDesc& gas = volume.grids.emplace_back();
+    gas.grid = "flame";
+    gas.optics =
+        GridMappingDesc::Optics{{4, 4, 4}, {2, 2, 2}, PhaseDesc{HenyeyGreensteinDesc{0}, "test"}};
+    SceneDesc desc = emissive(volume, flame({4, 4, 4}));
+    desc.water.absorption = {0, 0, 0};
+    desc.water.scattering->b = {0, 0, 0};
+    return desc;
+}
+
+// In all light paths meet the volume itself, so that nothing is missing.
+TEST(Emission, AreInEquilibriumInAFurnaceThatScatters) {
+    const EmissiveFixture fixture;
+    const SceneDesc desc = scattering_furnace(fixture);
+    const MeanLight paths = scattered_light(desc, RenderDesc::Integrator::path, 1024);
+    EXPECT_NEAR(paths.light, 1.0 / 3, 4 * paths.error);
+    EXPECT_LT(paths.error, 1e-3);
+    const MeanLight fast = scattered_light(desc, RenderDesc::Integrator::volume, 1);
+    // Its nodes' paths are few beside those; what is interpolated is the same everywhere.
+    EXPECT_NEAR(fast.light, 1.0 / 3, 0.01);
+}
+
+// Far from a small ball its light is that of a lamp as bright, however often it is scattered.
+TEST(Emission, AreScatteredManyTimesAsALampIs) {
+    const EmissiveFixture fixture;
+    SceneDesc desc = emissive(fixture.ball(0.05, 3), flame({3e5, 2e5, 1e5}));
+    desc.volumes[0].world_from_upright = Affine::translation({2.5, 0.2, 0.0});
+    desc.water = hg_water(0.7);
+    desc.water.absorption = {0.1, 0.1, 0.1};
+    desc.water.scattering->b = {0.5, 0.5, 0.5};
+    desc.geometry = {plane_at_z(5)};
+    const Lamp whole = TestScene(desc).assembled().lamps[0];
+    SceneDesc lit = desc;
+    lit.volumes.clear();
+    lit.lamps = {isotropic_lamp(whole.position(), whole.axis_intensity()[0])};
+    const MeanLight ball = scattered_light(desc, RenderDesc::Integrator::path, 4096),
+                    lamp = scattered_light(lit, RenderDesc::Integrator::path, 1024);
+    const double error = std::hypot(ball.error, lamp.error);
+    EXPECT_NEAR(ball.light, lamp.light, 4 * error);
+    EXPECT_LT(error, 0.01 * lamp.light);
+    EXPECT_GT(lamp.error, 0);
 }
 
 TEST(Emission, HaveANameOfTheirOwn) {

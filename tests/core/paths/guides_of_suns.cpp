@@ -57,7 +57,8 @@ TEST(GuidesOfSuns, ExpectWhatDeepWaterScattersBack) {
             const Sunlight sunlight{{std::sqrt(1 - mu_sun * mu_sun), 0, mu_sun},
                                     {{0, 0, 0}, {0, 0, -1}}};
             scene.lamps = {Lamp("sun", sunlight, one)};
-            const PathTables tables(scene.lit(), scattering, {}, {0});
+            const EmissionSampler emission(scene.lit());
+            const PathTables tables(scene.lit(), scattering, emission, {}, {0});
             GuidingDistribution guides;
             for (const double depth : {1e-4, 1e-2, 0.1}) {
                 guides.find(tables.guides, {0, 0, depth}, one);
