@@ -30,21 +30,21 @@ struct DirectionOptions {
 };
 constexpr DirectionOptions k_direction;
 
-Vector3 cosine_direction(const Vector3& normal, double u, double azimuth) {
-    return direction_around(normal, std::sqrt(u) / (1 + std::sqrt(1 - u)), azimuth);
-}
-
-Point3 above(const SurfaceHit& hit) {
-    const double scale = std::max({std::abs(hit.position.x), std::abs(hit.position.y),
-                                   std::abs(hit.position.z), hit.distance});
-    return hit.position + (k_direction.offset * scale) * hit.geometric_normal;
-}
-
 double wrapped(double x) {
     return x - std::floor(x);
 }
 
 }  // namespace
+
+Vector3 cosine_direction(const Vector3& normal, double u, double azimuth) {
+    return direction_around(normal, std::sqrt(u) / (1 + std::sqrt(1 - u)), azimuth);
+}
+
+Point3 point_above(const SurfaceHit& hit) {
+    const double scale = std::max({std::abs(hit.position.x), std::abs(hit.position.y),
+                                   std::abs(hit.position.z), hit.distance});
+    return hit.position + (k_direction.offset * scale) * hit.geometric_normal;
+}
 
 std::optional<Vector3> sample_phase_function(const ScatteringTables& tables,
                                              const WaterPoint& point, const Vector3& direction,
@@ -96,7 +96,7 @@ DirectionSampler::DirectionSampler(const GuidingTables& tables, const Ray& ray,
       guides_(&guides),
       scratch_(&scratch),
       x_(hit.position),
-      origin_(above(hit)),
+      origin_(point_above(hit)),
       incoming_(ray.direction),
       throughput_(throughput) {
     scratch_->surface = {ray, hit, 0, 0};

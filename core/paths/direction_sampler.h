@@ -94,6 +94,12 @@ class DirectionSampler {
     Spectrum throughput_;
 };
 
+/// Where a path begins that a surface reflects: a little above it.
+Point3 point_above(const SurfaceHit& hit);
+
+/// A direction around `normal` in proportion to its cosine, by two random numbers in [0, 1).
+Vector3 cosine_direction(const Vector3& normal, double u, double azimuth);
+
 /// Samples the direction in which a path goes on that is scattered by the phase functions alone,
 /// where it travels along `direction`. Multiplies `throughput`, by band, by sum_m b_m p_m over the
 /// probability density of what was drawn. Uses three random numbers, and `cumulative` as scratch;

@@ -94,6 +94,17 @@ double GuidingTables::spread(const Lamp& lamp, double radius) const {
            (lamp.is_met_by_paths() ? emission.sphere(lamp.index()).square : 0);
 }
 
+void GuidingTables::column(std::size_t lamp, const Point3& x, std::span<double> column) const {
+    if ((*optics.scene().emitters)[lamp].is_met_by_paths())
+        std::ranges::fill(column, 0.0);
+    else
+        lamps.column_to_lamp(lamp, x, column);
+}
+
+double GuidingTables::fraction(const Lamp& lamp) const {
+    return lamp.is_met_by_paths() ? emission.sphere(lamp.index()).escaping : 1;
+}
+
 void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
                                const Spectrum& weights) {
     tables_ = &tables;
@@ -110,23 +121,18 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
         const Vector3 to_lamp = tables.origin(lamps[j], x) - x;
         const double length = glm::length(to_lamp);
         if (!(length > 0)) continue;
-        const bool is_met = lamps[j].is_met_by_paths();
-        // What leaves an emissive volume crosses the water alone.
-        if (is_met)
-            std::ranges::fill(column_, 0.0);
-        else
-            tables.lamps.column_to_lamp(j, x, column_);
-        const double escaping = is_met ? tables.emission.sphere(lamps[j].index()).escaping : 1;
+        tables.column(j, x, column_);
+        const double fraction = tables.fraction(lamps[j]);
         double sum = 0, tau = 0, albedo = 0, scattered_once = 0, emitted = 0;
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             const Depth depth(tables, b, length, column_);
-            const double intensity = escaping * lamps[j].axis_intensity()[b];
+            const double intensity = fraction * lamps[j].axis_intensity()[b];
             const double weight = weights[b] / all * intensity *
                                   field.flux(field.at(depth.tau, depth.albedo));
             sum += weight;
             tau += weight * depth.tau;
             albedo += weight * depth.albedo;
-            if (is_met) emitted += weights[b] / all * intensity;
+            if (lamps[j].is_met_by_paths()) emitted += weights[b] / all * intensity;
             if (lamps[j].sunlight())
                 scattered_once += weights[b] / all * lamps[j].axis_intensity()[b] *
                                   std::exp(-depth.tau) * depth.tau * depth.albedo;
@@ -228,13 +234,13 @@ double estimated_reflection(const GuidingTables& tables, const SurfaceHit& hit,
     double light = 0;
     const std::vector<Lamp>& lamps = *optics.scene().emitters;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
-        const Vector3 to_lamp = lamps[j].origin(hit.position) - hit.position;
+        const Vector3 to_lamp = tables.origin(lamps[j], hit.position) - hit.position;
         const double length = std::max(glm::length(to_lamp), k_guide_min_radius);
-        tables.lamps.column_to_lamp(j, hit.position, column);
+        tables.column(j, hit.position, column);
         const double geometry =
-            guided_intensity(lamps[j], -to_lamp) *
+            tables.fraction(lamps[j]) * guided_intensity(lamps[j], -to_lamp) *
             std::max(k_guide_min_cosine, glm::dot(hit.normal, to_lamp) / length) /
-            lamps[j].spread(length) * std::numbers::inv_pi;
+            tables.spread(lamps[j], length) * std::numbers::inv_pi;
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             const Depth depth(tables, b, length, column);
             light += weights[b] / all * geometry * lamps[j].axis_intensity()[b] *

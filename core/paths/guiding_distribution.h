@@ -32,10 +32,14 @@ struct GuidingTables {
     GuidingTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
                   const NextEventEstimator& of_lamps, const EmissionSampler& of_emission);
 
-    /// Where the light that reaches `x` comes from, and what its irradiance is divided by at the
-    /// distance `radius`; those of an emissive volume that paths meet are its sphere's.
+    /// Where the light of a lamp that reaches `x` comes from, what its irradiance is divided by at
+    /// the distance `radius`, the columns on its way [unit m] and the fraction of its light that
+    /// sets out. Those of an emissive volume that paths meet are its sphere's, and what leaves that
+    /// crosses the uniform water alone.
     Point3 origin(const Lamp& lamp, const Point3& x) const;
     double spread(const Lamp& lamp, double radius) const;
+    void column(std::size_t lamp, const Point3& x, std::span<double> column) const;
+    double fraction(const Lamp& lamp) const;
 };
 
 /// Estimates the radiance of the lamps at a point by direction (path guiding: Vorba and Krivanek

@@ -398,6 +398,7 @@ void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
     w.cumulative.clear();
     double total = 0;
     for (std::size_t j = 0; j < lamps.size(); ++j) {
+        if (lamps[j].is_met_by_paths()) continue;
         const SkyEmitter* const sky = skies_.empty() ? nullptr : skies_[j];
         const Vector3 to_lamp = lamps[j].origin(hit.position) - hit.position;
         const double towards = glm::dot(hit.normal, to_lamp);

@@ -81,6 +81,7 @@ struct PathState {
     int scatterings = 0, reflections = 0;
     bool from_water = false;      // its first vertex, seen from the camera, is a scattering
     bool was_scattered = false;   // its last vertex is a scattering
+    bool meets_emission = true;   // of volumes, on its segments and around its surfaces
     bool stays_in_water = false;  // surfaces end it, and it leaves out what they emit and reflect
     double distance = 0;          // of the first vertex, along the camera ray [m]
     double splitting = 1;         // the product of its splitting factors

@@ -52,11 +52,21 @@ std::vector<LampEmitters> emitters_by_lamp(const std::vector<Lamp>& emitters) {
 std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
     const std::vector<LampEmitters> lamps = emitters_by_lamp(emitters);
     std::size_t view_count = 1;
-    for (const LampEmitters& lamp : lamps) view_count = std::max(view_count, lamp.own.size());
+    for (const LampEmitters& lamp : lamps)
+        if (!emitters[lamp.own.front()].is_met_by_paths())
+            view_count = std::max(view_count, lamp.own.size());
     std::vector<LampView> views(view_count);
     // Distributes a lamp's emitters evenly among the views, each the brighter the fewer views it is
-    // in.
+    // in. Those of a volume that paths meet are for guiding alone: one is enough.
     const auto distribute = [&](const std::vector<std::size_t>& of_lamp) {
+        if (!of_lamp.empty() && emitters[of_lamp.front()].is_met_by_paths()) {
+            const Lamp& emitter = emitters[of_lamp.front()];
+            for (LampView& view : views) {
+                view.lamps.push_back(emitter.brightened(1 / emitter.fraction()));
+                view.emitters.push_back(of_lamp.front());
+            }
+            return;
+        }
         const std::size_t count = of_lamp.size();
         for (std::size_t e = 0; e < count; ++e) {
             const std::size_t begin = e * view_count / count, end = (e + 1) * view_count / count;

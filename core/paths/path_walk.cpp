@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/base/error.h"
 #include "core/paths/irradiance_cache.h"
@@ -107,6 +108,7 @@ void PathWalk::trace_from_surface(PathState state, const SurfaceSample& surface)
 
 void PathWalk::trace_mirrored(PathState state, const SurfaceSample& surface) {
     const std::size_t bands = tables_.optics.bands();
+    state.meets_emission = false;
     PathSegment& next = scratch_.segment;
     const DirectionSampler vertex = add_reflection(state, surface.ray, surface.hit, next.guides);
     const bool goes_on = sample_direction(vertex, state).has_value();
@@ -360,8 +362,8 @@ double PathWalk::water_surface_reflectance(const WaterSegment& segment) const {
 void PathWalk::estimate_next_event(PathState& state, const PathSegment& segment) {
     const WaterSegment& water = segment.water;
     tables_.lamps.estimate_in_scatter(water, state, random_, sink_, scratch_.next_event);
-    // Emission that lights a surface is that of emitters (estimate_direct_light).
-    if (state.was_scattered)
+    // What lights a surface was added there (add_reflected_emission).
+    if (state.was_scattered && state.meets_emission)
         tables_.guides.emission.estimate(tables_.optics, water, state, random_, sink_,
                                          scratch_.emission);
     if (!water.has_hit || state.stays_in_water || meets_water_surface(water)) return;
@@ -374,6 +376,7 @@ void PathWalk::add_surface_light(PathState& state, const WaterSegment& segment,
                                  const Spectrum& transmittance) {
     tables_.lamps.estimate_direct_light(segment, transmittance, state, random_, sink_,
                                         scratch_.next_event);
+    add_reflected_emission(state, segment, transmittance);
     if (!segment.hit.has_material) return;
     const std::size_t bands = tables_.optics.bands();
     const SurfaceMaterial material = tables_.optics.scene().surfaces->material(segment.hit);
@@ -386,6 +389,44 @@ void PathWalk::add_surface_light(PathState& state, const WaterSegment& segment,
     expected.pixel = std::max(expected.pixel, contribution / static_cast<double>(bands));
     expected.ambient =
         std::max(expected.ambient, emission / (k_ambient_beyond * static_cast<double>(bands)));
+}
+
+// By multiple importance sampling (Veach 1997): half of the directions lead to points of the light,
+// half follow the cosine to the normal. The density of the former falls to nothing near the light.
+void PathWalk::add_reflected_emission(PathState state, const WaterSegment& segment,
+                                      const Spectrum& transmittance) {
+    const EmissionSampler& emission = tables_.guides.emission;
+    if (emission.empty() || !state.meets_emission) return;
+    const WaterOptics& optics = tables_.optics;
+    const SurfaceHit& hit = segment.hit;
+    const double technique = random_.next(), u = random_.next(), v = random_.next(),
+                 w = random_.next();
+    const Point3 x = point_above(hit);
+    const Vector3 direction =
+        technique < 0.5 ? emission.sample(x, u, v, w) : cosine_direction(hit.normal, u, v);
+    const double cosine = glm::dot(hit.normal, direction);
+    if (!(cosine > 0) || !(glm::dot(hit.geometric_normal, direction) > 0)) return;
+    const double pdf =
+        0.5 * (emission.towards({x, direction}).pdf + cosine * std::numbers::inv_pi);
+    const SurfaceSample surface{segment.ray, hit, 0, 0};
+    Spectrum values;
+    SurfaceReflection(*optics.scene().surfaces, surface, static_cast<int>(optics.bands()))
+        .brdf_towards(direction, values);
+    for (std::size_t b = 0; b < optics.bands(); ++b)
+        state.throughput[b] *= transmittance[b] * values[b] * cosine / pdf;
+    ++state.reflections;
+    add_vertex(state, PathVertex::Kind::reflected, hit.position, &hit);
+    WaterSegment& next = scratch_.towards_emission;
+    optics.trace({x, direction}, next);
+    emission.estimate(optics, next, state, random_, sink_, scratch_.emission);
+    if (!meets_water_surface(next)) return;
+    const Spectrum to_mirror = this->transmittance(next);
+    const double reflectance = water_surface_reflectance(next);
+    for (std::size_t b = 0; b < optics.bands(); ++b)
+        state.throughput[b] *= to_mirror[b] * reflectance;
+    add_vertex(state, PathVertex::Kind::mirrored, next.hit.position);
+    optics.trace(mirrored_ray(next), next);
+    emission.estimate(optics, next, state, random_, sink_, scratch_.emission);
 }
 
 void PathWalk::expect_surface(const PathState& state, PathSegment& segment) {

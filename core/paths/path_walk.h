@@ -46,6 +46,7 @@ struct PathScratch {
     std::vector<double> cumulative, indirect, column;
     NextEventScratch next_event;
     EmissionSampler::Scratch emission;
+    WaterSegment towards_emission;
     // For preparing a camera ray, beside the point:
     std::vector<LampPassage> passages;  // of the lamps
     std::vector<double> guided, plain;
@@ -147,6 +148,9 @@ class PathWalk {
     void estimate_next_event(PathState& state, const PathSegment& segment);
     void add_surface_light(PathState& state, const WaterSegment& segment,
                            const Spectrum& transmittance);
+    // Adds the light of emissive volumes that the surface at the segment's end reflects.
+    void add_reflected_emission(PathState state, const WaterSegment& segment,
+                                const Spectrum& transmittance);
     // Sets what is expected of the surface at the segment's end.
     void expect_surface(const PathState& state, PathSegment& segment);
     double expected_in_mirror(const PathState& state, const WaterSegment& segment,
