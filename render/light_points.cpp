@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/geometry/surface_reflection.h"
+#include "core/light/integrator_table.h"
 #include "core/light/lamp_factory.h"
 #include "core/light/ray_panels.h"
 #include "core/light/sky_emitter.h"
@@ -263,12 +264,15 @@ std::vector<std::string> pointed_lamp_notes(const AssembledScene& scene,
         // The scene's number of samples, of which drafts use a part.
         const auto samples = static_cast<std::size_t>(
             is_sky ? desc.sky->samples : desc.emissive_volume->emission.samples);
+        const bool is_single = scattering_of(scene.desc().render) == RenderDesc::Scattering::single;
         notes.push_back(fmt::format(
             "the {} lights this scene as {} {}: with {} of them the image changes by about {:.0f} "
-            "% (RMS), which no stated error includes; {}: {} renders that",
+            "% (RMS), which no stated error includes; {}: {} renders that{}",
             is_sky ? "sky" : "volume '" + desc.name + "'", lamp.count, is_sky ? "parts" : "points",
             more, 100 * lamp.change, is_sky ? "sky.samples" : "its emission's samples",
-            std::min(k_times_as_many * samples, k_max_points)));
+            std::min(k_times_as_many * samples, k_max_points),
+            !is_sky && is_single ? ", and in the water render.scattering: multiple needs none"
+                                 : ""));
     }
     return notes;
 }

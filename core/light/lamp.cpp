@@ -59,7 +59,8 @@ Lamp Lamp::focused(std::shared_ptr<const SunFocus> focus) const {
 
 bool operator==(const Lamp& a, const Lamp& b) {
     return a.name_ == b.name_ && a.axis_intensity_ == b.axis_intensity_ && a.index_ == b.index_ &&
-           a.fraction_ == b.fraction_ && a.is_met_by_paths_ == b.is_met_by_paths_ && *a.emitter_ == *b.emitter_;
+           a.fraction_ == b.fraction_ && a.is_met_by_paths_ == b.is_met_by_paths_ &&
+           *a.emitter_ == *b.emitter_;
 }
 
 }  // namespace uw

@@ -160,8 +160,7 @@ double DirectionSampler::sample_candidates(PathRandom& random,
         const GuidingDistribution::Towards guide = guides_->towards(direction);
         const EmissionSampler::Towards emitted =
             is_lit ? emission.towards({x_, direction}) : EmissionSampler::Towards{};
-        candidate.density =
-            of_local * local + of_guides * guide.pdf + of_emission * emitted.pdf;
+        candidate.density = of_local * local + of_guides * guide.pdf + of_emission * emitted.pdf;
         candidate.response =
             scatters ? scratch_->phase_cumulative.back() * local : reflected(direction);
         candidate.of_particles = tables_->particles.along({x_, direction}, k_far);

@@ -56,11 +56,11 @@ void cross(const Ray& ray, const Bounds& bounds, const Vector3& edge,
         const auto i = static_cast<std::size_t>(axis);
         const double leave = std::min(next[axis], end);
         if (leave > s) {
-            const std::size_t cell = (static_cast<std::size_t>(at[2]) *
-                                          static_cast<std::size_t>(count[1]) +
-                                      static_cast<std::size_t>(at[1])) *
-                                         static_cast<std::size_t>(count[0]) +
-                                     static_cast<std::size_t>(at[0]);
+            const std::size_t cell =
+                (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(count[1]) +
+                 static_cast<std::size_t>(at[1])) *
+                    static_cast<std::size_t>(count[0]) +
+                static_cast<std::size_t>(at[0]);
             if (!visit(cell, s, leave)) return;
             s = leave;
         }
@@ -145,18 +145,17 @@ void EmissionSampler::fill_cells(const LitScene& scene, Volume& volume) {
         const auto across = static_cast<std::size_t>(volume.count[0]);
         const auto down = static_cast<std::size_t>(volume.count[1]);
         const Point3 corner =
-            volume.bounds.min +
-            volume.edge * Vector3(static_cast<double>(n % across),
-                                  static_cast<double>(n / across % down),
-                                  static_cast<double>(n / across / down));
+            volume.bounds.min + volume.edge * Vector3(static_cast<double>(n % across),
+                                                      static_cast<double>(n / across % down),
+                                                      static_cast<double>(n / across / down));
         double emission = 0;
         for (int k = 0; k < places; ++k)
             for (int j = 0; j < places; ++j)
                 for (int i = 0; i < places; ++i) {
                     double value = 0;
-                    field.sample(
-                        corner + volume.edge * (Vector3(i + 0.5, j + 0.5, k + 0.5) * (1.0 / places)),
-                        std::span(&value, 1));
+                    field.sample(corner + volume.edge *
+                                              (Vector3(i + 0.5, j + 0.5, k + 0.5) * (1.0 / places)),
+                                 std::span(&value, 1));
                     if (!(value > 0)) continue;
                     const Spectrum emitted = volume.light->emission.of(value);
                     for (const double band : emitted.first(bands)) emission += band;
@@ -218,20 +217,20 @@ double EmissionSampler::escaping_fraction(const Volume& volume) {
     double sum = 0;
     for (int i = 0; i < k_emission_cells.escapes; ++i) {
         const double target = (i + 0.5) / k_emission_cells.escapes * volume.power;
-        const auto chosen = std::min(
-            static_cast<std::size_t>(std::ranges::upper_bound(volume.cumulative, target) -
-                                     volume.cumulative.begin()),
-            volume.lit.size() - 1);
+        const auto chosen =
+            std::min(static_cast<std::size_t>(std::ranges::upper_bound(volume.cumulative, target) -
+                                              volume.cumulative.begin()),
+                     volume.lit.size() - 1);
         const std::size_t n = volume.lit[chosen];
-        const Point3 x = volume.bounds.min +
-                         volume.edge * Vector3(static_cast<double>(n % across) + 0.5,
-                                               static_cast<double>(n / across % down) + 0.5,
-                                               static_cast<double>(n / across / down) + 0.5);
+        const Point3 x =
+            volume.bounds.min + volume.edge * Vector3(static_cast<double>(n % across) + 0.5,
+                                                      static_cast<double>(n / across % down) + 0.5,
+                                                      static_cast<double>(n / across / down) + 0.5);
         double depth = 0;
         // Every direction is as good as any other: neighbours in the list take very different ones.
         const int scattered = i * 89 % k_emission_cells.escapes;
-        cross({x, spiral_direction(scattered, k_emission_cells.escapes)}, volume.bounds, volume.edge,
-              volume.count, k_far, [&](std::size_t cell, double begin, double end) {
+        cross({x, spiral_direction(scattered, k_emission_cells.escapes)}, volume.bounds,
+              volume.edge, volume.count, k_far, [&](std::size_t cell, double begin, double end) {
                   depth += static_cast<double>(volume.cells[cell].attenuation) * (end - begin);
                   return depth < k_max_depth_of_emission;
               });
@@ -247,10 +246,10 @@ void EmissionSampler::fill_means(const LitScene& scene) {
     const Vector3 edge = (means_bounds_.max - means_bounds_.min) / static_cast<double>(along);
     means_.resize(along * along * along);
     parallel_for(means_.size(), [&](std::size_t n) {
-        const Point3 x = means_bounds_.min +
-                         edge * Vector3(static_cast<double>(n % along) + 0.5,
-                                        static_cast<double>(n / along % along) + 0.5,
-                                        static_cast<double>(n / along / along) + 0.5);
+        const Point3 x =
+            means_bounds_.min + edge * Vector3(static_cast<double>(n % along) + 0.5,
+                                               static_cast<double>(n / along % along) + 0.5,
+                                               static_cast<double>(n / along / along) + 0.5);
         double sum = 0;
         for (int i = 0; i < k_emission_cells.directions; ++i)
             sum += towards({x, spiral_direction(i, k_emission_cells.directions)}).radiance;
@@ -261,8 +260,8 @@ void EmissionSampler::fill_means(const LitScene& scene) {
 double EmissionSampler::mean(const Point3& x) const {
     if (means_.empty()) return 0;
     const int along = k_emission_cells.means_along;
-    const Vector3 place = (x - means_bounds_.min) /
-                          (means_bounds_.max - means_bounds_.min) * static_cast<double>(along);
+    const Vector3 place = (x - means_bounds_.min) / (means_bounds_.max - means_bounds_.min) *
+                          static_cast<double>(along);
     std::size_t n = 0;
     for (int axis = 2; axis >= 0; --axis) {
         if (!(place[axis] >= 0 && place[axis] < along)) return 0;
@@ -297,19 +296,20 @@ Vector3 EmissionSampler::sample(const Point3& x, double u, double v, double w) c
     }
     const std::vector<double>& sums = volume->cumulative;
     const double target = u * sums.back();
-    const auto chosen = std::min(
-        static_cast<std::size_t>(std::ranges::upper_bound(sums, target) - sums.begin()),
-        sums.size() - 1);
+    const auto chosen =
+        std::min(static_cast<std::size_t>(std::ranges::upper_bound(sums, target) - sums.begin()),
+                 sums.size() - 1);
     const double before = chosen == 0 ? 0 : sums[chosen - 1];
     const std::size_t n = volume->lit[chosen];
     const auto across = static_cast<std::size_t>(volume->count[0]);
     const auto down = static_cast<std::size_t>(volume->count[1]);
     const Point3 y =
         volume->bounds.min +
-        volume->edge * Vector3(static_cast<double>(n % across) +
-                                   std::clamp((target - before) / (sums[chosen] - before), 0.0, 1.0),
-                               static_cast<double>(n / across % down) + v,
-                               static_cast<double>(n / across / down) + w);
+        volume->edge *
+            Vector3(static_cast<double>(n % across) +
+                        std::clamp((target - before) / (sums[chosen] - before), 0.0, 1.0),
+                    static_cast<double>(n / across % down) + v,
+                    static_cast<double>(n / across / down) + w);
     const Vector3 way = y - x;
     const double length = glm::length(way);
     return length > 0 ? way / length : Vector3(0, 0, 1);
@@ -333,8 +333,7 @@ EmissionSampler::Towards EmissionSampler::towards(const Ray& ray) const {
                   if (cell.emission > 0) {
                       const auto emission = static_cast<double>(cell.emission);
                       radiance += emission * transmittance * length * passed;
-                      moment += emission * length *
-                                (begin * begin + begin * end + end * end) / 3;
+                      moment += emission * length * (begin * begin + begin * end + end * end) / 3;
                   }
                   transmittance *= passed;
                   return true;

@@ -51,8 +51,9 @@ class EmissionSampler {
         double radiance = 0, pdf = 0;
     };
     Towards towards(const Ray& ray) const;
-    /// The mean over all directions of the radiance that arrives at `x` without an event on the way,
-    /// for guiding: that around the centre of a coarse cell of the particles' bounds, 0 elsewhere.
+    /// The mean over all directions of the radiance that arrives at `x` without an event on the
+    /// way, for guiding: that around the centre of a coarse cell of the particles' bounds, 0
+    /// elsewhere.
     double mean(const Point3& x) const;
 
     /// Memory in which `estimate` works.
@@ -79,11 +80,11 @@ class EmissionSampler {
         Bounds bounds;
         Vector3 edge;  // of a cell [m]
         std::array<int, 3> count{};
-        std::vector<Cell> cells;            // x fastest
-        std::vector<std::size_t> lit;       // those with light
-        std::vector<double> cumulative;     // of their emission
-        double power = 0;                   // int emission dV, summed over the bands [W/sr]
-        double uniform_attenuation = 0;     // outside, of the clearest band [1/m]
+        std::vector<Cell> cells;         // x fastest
+        std::vector<std::size_t> lit;    // those with light
+        std::vector<double> cumulative;  // of their emission
+        double power = 0;                // int emission dV, summed over the bands [W/sr]
+        double uniform_attenuation = 0;  // outside, of the clearest band [1/m]
     };
 
     static Volume make_volume(const LitScene& scene, const SceneEmission& emission);

@@ -66,8 +66,7 @@ double guided_spread(const GuidingTables& tables, const Lamp& lamp, double dista
 }  // namespace
 
 GuidingTables::GuidingTables(const WaterOptics& of_optics, const ScatteringTables& of_scattering,
-                             const NextEventEstimator& of_lamps,
-                             const EmissionSampler& of_emission)
+                             const NextEventEstimator& of_lamps, const EmissionSampler& of_emission)
     : optics(of_optics),
       scattering(of_scattering),
       lamps(of_lamps),
@@ -127,8 +126,8 @@ void GuidingDistribution::find(const GuidingTables& tables, const Point3& x,
         for (std::size_t b = stride / 2; b < bands; b += stride) {
             const Depth depth(tables, b, length, column_);
             const double intensity = fraction * lamps[j].axis_intensity()[b];
-            const double weight = weights[b] / all * intensity *
-                                  field.flux(field.at(depth.tau, depth.albedo));
+            const double weight =
+                weights[b] / all * intensity * field.flux(field.at(depth.tau, depth.albedo));
             sum += weight;
             tau += weight * depth.tau;
             albedo += weight * depth.albedo;

@@ -107,8 +107,8 @@ PathTracer::PathTracer(const LitScene& scene,
         if (!deep_shadows.empty())
             for (const std::size_t emitter : view.emitters)
                 of_view.push_back(deep_shadows[emitter]);
-        tables_.push_back(
-            std::make_unique<PathTables>(seen, *scattering_, emission_, std::move(of_view), view.emitters));
+        tables_.push_back(std::make_unique<PathTables>(seen, *scattering_, emission_,
+                                                       std::move(of_view), view.emitters));
     }
 }
 

@@ -406,8 +406,7 @@ void PathWalk::add_reflected_emission(PathState state, const WaterSegment& segme
         technique < 0.5 ? emission.sample(x, u, v, w) : cosine_direction(hit.normal, u, v);
     const double cosine = glm::dot(hit.normal, direction);
     if (!(cosine > 0) || !(glm::dot(hit.geometric_normal, direction) > 0)) return;
-    const double pdf =
-        0.5 * (emission.towards({x, direction}).pdf + cosine * std::numbers::inv_pi);
+    const double pdf = 0.5 * (emission.towards({x, direction}).pdf + cosine * std::numbers::inv_pi);
     const SurfaceSample surface{segment.ray, hit, 0, 0};
     Spectrum values;
     SurfaceReflection(*optics.scene().surfaces, surface, static_cast<int>(optics.bands()))

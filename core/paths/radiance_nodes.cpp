@@ -130,8 +130,7 @@ class RadianceEstimator::WaterSum final : public ContributionSink {
         w_.batch_mean[i] += weight_ * mean;
         path_ += mean;
         // Light that was looked up in the cache at a surface comes from no emitter.
-        if (is_lit_ && term.reflections > 0 && term.emitter == k_no_emitter &&
-            !term.is_met)
+        if (is_lit_ && term.reflections > 0 && term.emitter == k_no_emitter && !term.is_met)
             for (std::size_t b = 0; b < bands_; ++b)
                 w_.lit_indirect[b] += weight_ * term.radiance[b];
     }

@@ -116,6 +116,11 @@ TEST_F(LightPoints, OfAVolumeAreJudgedAsImagesOfMorePointsDo) {
     EXPECT_GT(truth, 0.01);
     // Six places on each ray, which may lie near a point or not.
     EXPECT_NEAR(lamps[0].change, truth, 0.5 * truth);
+    EXPECT_NE(notes(lamps).at(0).find("render.scattering: multiple"), std::string::npos);
+    // In all light there is no surface for them to light.
+    SceneDesc all_light = desc;
+    all_light.render.scattering = RenderDesc::Scattering::multiple;
+    EXPECT_EQ(found(all_light)[0].change, 0);
 }
 
 TEST_F(LightPoints, AreNothingWithoutSkyAndEmission) {

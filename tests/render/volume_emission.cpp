@@ -335,8 +335,8 @@ MeanLight scattered_light(SceneDesc desc, RenderDesc::Integrator integrator, int
             mean.error += error * error;
         }
     mean.error = std::sqrt(mean.error);
-    mean.light = (image.sum(Layer::backscatter, 0) + image.sum(Layer::multiple, 0)) /
-                 (width * height);
+    mean.light =
+        (image.sum(Layer::backscatter, 0) + image.sum(Layer::multiple, 0)) / (width * height);
     return mean;
 }
 

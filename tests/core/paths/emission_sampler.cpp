@@ -44,11 +44,11 @@ class SampledEmission : public testing::Test {
         desc.per_unit = {3, 1};
         const std::vector<double> bands{540, 450};
         for (std::size_t i = 0; i < 2; ++i) {
-            auto volume = std::make_shared<EmissiveVolume>(EmissiveVolume{
-                std::make_shared<GaussianField>(k_centres[i], k_sigma,
-                                                1 + static_cast<double>(i), 0.05),
-                Emission(desc, bands),
-                {}});
+            auto volume = std::make_shared<EmissiveVolume>(
+                EmissiveVolume{std::make_shared<GaussianField>(k_centres[i], k_sigma,
+                                                               1 + static_cast<double>(i), 0.05),
+                               Emission(desc, bands),
+                               {}});
             emissions_.push_back({i, volume});
             scene_.add_lamp(k_centres[i], 1);
             scene_.lamps.back() = scene_.lamps.back().met_by_paths();
@@ -135,17 +135,16 @@ TEST_F(SampledEmission, SegmentsHaveTheirLineIntegral) {
                     each.volume->field->sample(segment.ray.at(s), value);
                     emission += (b == 0 ? 3 : 1) * value[0];
                 }
-                return emission *
-                       std::exp(-optics.attenuation().optical_depth(b, s, column));
+                return emission * std::exp(-optics.attenuation().optical_depth(b, s, column));
             };
             double truth = 0;
             for (double s = 0; s < 6; s += 0.25)
                 truth += AdaptiveQuadrature::integrate(integrand, s, s + 0.25, 1e-9);
-            const double error = std::sqrt(std::max(0.0, square[b] - mean[b] * mean[b]) /
-                                           k_samples);
+            const double error =
+                std::sqrt(std::max(0.0, square[b] - mean[b] * mean[b]) / k_samples);
             ASSERT_GT(truth, 1e-4);
             EXPECT_NEAR(mean[b], truth, 4 * error + 1e-3 * truth);  // profiles are linear
-            EXPECT_LT(error, 0.01 * truth);                        // one in a hundred
+            EXPECT_LT(error, 0.01 * truth);                         // one in a hundred
         }
     }
 }
