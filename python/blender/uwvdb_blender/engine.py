@@ -141,7 +141,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
             self.update_stats("", "uwvdb: writing the scene")
             view = self._view(depsgraph)
             moments = self._moments(depsgraph)
-            written = scenes.write(depsgraph, file, path, view, size, moments, notes, self.test_break)
+            written = scenes.write(depsgraph, file, path, view, size, moments, notes, self.test_break,
+                                   self._on_progress)
             self._words = written.words
             if _export:
                 image = os.path.splitext(written.path)[0] + ".exr"

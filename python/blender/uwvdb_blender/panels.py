@@ -70,6 +70,7 @@ class UWVDB_PT_render(RenderPanel, bpy.types.Panel):
             part.prop(settings, "error", text="")
         column.prop(settings, "bands")
         column.prop(settings, "use_gloss")
+        column.prop(settings, "bake_size")
         column.prop(settings, "threads")
         column.prop(context.scene.render, "preview_pixel_size", text="Viewport Pixels")
         column.prop(settings, "kept_in")
