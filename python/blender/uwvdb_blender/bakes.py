@@ -90,7 +90,9 @@ class _Job:
         digest = hashlib.blake2b(digest_size=16)
         digest.update(repr((VERSION, bpy.app.version, self.needs.digest, sorted(self.channels), self.extra)).encode())
         for name, values in sorted(self.part.arrays.items()):
-            if self.needs.is_of_shape or not self.part.has_rest or name not in ("positions", "normals"):
+            if name == "normals":
+                continue  # they follow from the rest, and Blender's own sums of them differ from time to time
+            if name != "positions" or self.needs.is_of_shape or not self.part.has_rest:
                 digest.update(name.encode() + str(values.shape).encode())
                 digest.update(numpy.ascontiguousarray(values))
         return digest.hexdigest()
@@ -233,6 +235,11 @@ class _Part:
         if found is None:
             return None
         loops, vertices, faces, arrays = found
+        smooth = numpy.empty(len(mesh.polygons), bool)
+        mesh.polygons.foreach_get("use_smooth", smooth)
+        arrays["smooth"] = smooth[faces]
+        if mesh.has_custom_normals:
+            arrays["turned"] = numpy.rint(50 * arrays["normals"]).astype(numpy.int8)
         rest = numpy.empty((len(mesh.vertices), 3), numpy.float32)
         mesh.vertices.foreach_get("undeformed_co", rest.reshape(-1))
         rest = rest[vertices]

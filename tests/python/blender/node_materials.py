@@ -290,7 +290,8 @@ def ball(name, **place):
 
 # They look at UV maps, or at the corners of a box.
 ON_BOXES = {checker_by_a_turned_mapping, painted_and_turned_in_hue, packed_picture_with_contrast,
-            two_uv_maps_overlaid, udim_tiles, curves_and_separated_channels, bricks_in_generated_coordinates}
+            two_uv_maps_overlaid, udim_tiles, curves_and_separated_channels, bricks_in_generated_coordinates,
+            "normal_map_in_a_group"}
 
 
 def shelf(makers, width=360):
@@ -309,7 +310,76 @@ def shelf(makers, width=360):
         x, z = number % columns - (columns - 1) / 2, (rows - 1) / 2 - number // columns
         place = {"location": Vector((1.6 * x, distance, 1.6 * z)), "rotation": (0.4, 0.2, 0.6 + 0.1 * number)}
         name = make.__name__.replace("_", " ")
-        thing = unwrapped_box(name, **place) if make in ON_BOXES else ball(name, **place)
+        thing = unwrapped_box(name, **place) if {make, make.__name__} & ON_BOXES else ball(name, **place)
         thing.pass_index = number + 1
         make(thing)
     return scene
+
+
+def bumps_by_noise(thing):
+    nodes, links, inputs = shaded(thing)
+    source = connected(nodes, links, "ShaderNodeTexNoise", 0, Scale=4.0)
+    links.new(connected(nodes, links, "ShaderNodeBump", 0, Strength=0.6, Distance=0.3, Height=source),
+              inputs["Normal"])
+
+
+def normal_map_in_a_group(thing):
+    nodes, links, inputs = shaded(thing)
+    image = bpy.data.images.new("Bumps", 64, 64, is_data=True)
+    y, x = numpy.mgrid[0:64, 0:64].astype(numpy.float32) / 64 * 2 * math.pi
+    normal = numpy.stack([0.4 * numpy.sin(3 * x), 0.3 * numpy.cos(2 * y), numpy.ones_like(x)], axis=-1)
+    normal /= numpy.linalg.norm(normal, axis=-1, keepdims=True)
+    values = numpy.ones((64, 64, 4), numpy.float32)
+    values[..., :3] = normal / 2 + 0.5
+    image.pixels.foreach_set(values.reshape(-1))
+    image.pack()
+    tree = bpy.data.node_groups.new("Detail", "ShaderNodeTree")
+    interface(tree, "Strength", "Normal")
+    give, take = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+    invert = connected(tree.nodes, tree.links, "ShaderNodeInvert", 0, Color=textured(tree.nodes, image).outputs[0])
+    flat = mixed(tree.nodes, tree.links, textured(tree.nodes, image).outputs[0], invert, 0.1)
+    bend = tree.nodes.new("ShaderNodeNormalMap")
+    tree.links.new(flat, bend.inputs["Color"])
+    tree.links.new(give.outputs[0], bend.inputs["Strength"])
+    tree.links.new(bend.outputs[0], take.inputs[0])
+    group = nodes.new("ShaderNodeGroup")
+    group.node_tree = tree
+    group.inputs[0].default_value = 0.8
+    links.new(group.outputs[0], inputs["Normal"])
+
+
+def metal_and_roughness_by_noise(thing):
+    nodes, links, inputs = shaded(thing)
+    inputs["Base Color"].default_value = (0.9, 0.6, 0.3, 1)
+    noise = connected(nodes, links, "ShaderNodeTexNoise", 0, Scale=1.5)
+    links.new(ramp(nodes, links, noise, (0.4, (0.35,) * 3), (0.6, (0.7,) * 3)), inputs["Roughness"])
+    inputs["Metallic"].default_value = 1
+
+
+def glow_by_a_wave(thing):
+    nodes, links, inputs = shaded(thing)
+    inputs["Base Color"].default_value = (0, 0, 0, 1)
+    name = "Emission" if "Emission" in inputs else "Emission Color"
+    wave = connected(nodes, links, "ShaderNodeTexWave", 1, Scale=1.0)
+    links.new(ramp(nodes, links, wave, (0, (0.1, 0.2, 1)), (1, (1, 0.6, 0.1))), inputs[name])
+    inputs["Emission Strength"].default_value = 3
+
+
+def holes_by_a_checker(thing):
+    nodes, links, inputs = shaded(thing)
+    inputs["Base Color"].default_value = (0.2, 0.7, 0.4, 1)
+    links.new(connected(nodes, links, "ShaderNodeTexChecker", 1, Scale=2.5), inputs["Alpha"])
+
+
+OTHER_MATERIALS = (bumps_by_noise, normal_map_in_a_group, metal_and_roughness_by_noise, glow_by_a_wave,
+                   holes_by_a_checker)
+
+
+def inner(indices, number):
+    """Pixels of an object all of whose neighbours are of it, too."""
+    own = indices == number
+    result = own.copy()
+    for axis in (0, 1):
+        for step in (-1, 1):
+            result &= numpy.roll(own, step, axis)
+    return result
