@@ -6,7 +6,9 @@ import itertools
 import numpy
 from mathutils import Vector
 
+from . import units, water
 from .meshes import SURFACES, UNKNOWN, domain_settings, of_collection, shower_of
+from .notes import Refusal
 
 RAYS = ("visible_diffuse", "visible_glossy", "visible_transmission", "visible_volume_scatter")
 # Of Blender's passes those that are made, and what are no passes.
@@ -63,11 +65,14 @@ def _background(world):
         for node in world.node_tree.nodes)
 
 
-def _world_volume(world):
-    if not world.use_nodes or world.node_tree is None:
+def _world_volume(world, scene):
+    """Whether a world has a volume shader that is not what World > Water has."""
+    if not water.has_volume(world):
         return False
-    output = world.node_tree.get_output_node("CYCLES") or world.node_tree.get_output_node("ALL")
-    return output is not None and output.inputs["Volume"].is_linked
+    try:
+        return not water.of_volume(world, units.metres_per_unit(scene)).are_of(world.uwvdb)
+    except Refusal:
+        return True
 
 
 def _shadowless(light):
@@ -152,8 +157,8 @@ TABLE = (
         s.scene.render.use_multiview and c.type == "PANO" and c.stereo.use_spherical_stereo)),
     # The world.
     Feature("world", "the world's background gives no light under water", lambda w, s: _background(w)),
-    Feature("world", "the world's volume shader is left out: the water is that of World > Water",
-            lambda w, s: _world_volume(w)),
+    Feature("world", "the world's volume shader is left out: the water is that of World > Water, where From Volume "
+                     "Shader reads it", lambda w, s: _world_volume(w, s.scene)),
     # The view layer.
     Feature("layer", "View Layer > Filter is left out: surfaces, volumes and motion blur are shown",
             lambda v, s: not all(getattr(v, f"use_{kind}", True) for kind in ("solid", "volumes", "motion_blur"))),
