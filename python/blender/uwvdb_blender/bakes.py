@@ -165,6 +165,8 @@ class Bakes:
     def _plan(self, instance, depsgraph, seen):
         shown = instance.object
         slots = meshes.slots_of(shown, depsgraph)
+        if meshes.is_held_out(instance, depsgraph.view_layer):
+            return
         needed = [self._need(material) for material in slots]
         if not any(needed):
             return

@@ -212,7 +212,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
         arguments = self._arguments(depsgraph, path, written, size, out) + ["--size", "{}x{}".format(*size)]
         settings = depsgraph.scene.uwvdb
         arguments += ["--quality", settings.quality.lower()]
-        arguments += ["--layers", ",".join(passes.layers_of(depsgraph.view_layer, depsgraph.scene))]
+        arguments += ["--layers", ",".join(passes.layers_of(depsgraph.view_layer, depsgraph.scene,
+                                                               written.held_out))]
         if settings.integrator == "PATH" and settings.use_error:
             arguments += ["--error", repr(settings.error)]
         return arguments

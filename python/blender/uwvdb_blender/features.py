@@ -113,7 +113,7 @@ TABLE = (
     Feature("shown", "not visible to cameras: left out, and so is its shadow", lambda o, by, s: not o.visible_camera),
     Feature("shown", "in a collection that is Indirect Only: left out, and so are its shadow and its light",
             lambda o, by, s: o.visible_camera and of_collection(by, "indirect_only_get", s.layer)),
-    Feature("shown", "shown like any other: holdouts, of objects and of collections, are left out",
+    Feature("plume", "shown like any other: holdouts of volumes, and of collections with them, are left out",
             lambda o, by, s: o.is_holdout or of_collection(by, "holdout_get", s.layer)),
     Feature("surface", "shown like any other: shadow catchers are left out", lambda o, by, s: o.is_shadow_catcher),
     Feature("shown", "casts a shadow here, although its Ray Visibility has none",

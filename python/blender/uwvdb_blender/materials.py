@@ -14,6 +14,10 @@ WATER_INDEX = 1.334
 DEFAULT = {"name": "default", "pbrMetallicRoughness": {
     "baseColorFactor": [0.8, 0.8, 0.8, 1], "metallicFactor": 0, "roughnessFactor": 1},
     "extensions": {"KHR_materials_ior": {"ior": WATER_INDEX}}}
+# What is held out gives no light, but stops it; alpha is made of the mattes afterwards (passes.py).
+HELD_OUT = {"name": "holdout", "pbrMetallicRoughness": {
+    "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor": 1},
+    "extensions": {"KHR_materials_ior": {"ior": WATER_INDEX}}}
 WRAPS = {"REPEAT": 10497, "EXTEND": 33071, "CLIP": 33071, "MIRROR": 33648}
 
 
@@ -145,6 +149,13 @@ class Exporter:
             self._known[key] = (self._glb.add_material(done.content), done)
             self.pass_indices.append(material.pass_index if material is not None else 0)
         return self._known[key]
+
+    def export_held_out(self):
+        """The same for surfaces of objects that are held out."""
+        if HELD_OUT["name"] not in self._known:
+            self._known[HELD_OUT["name"]] = (self._glb.add_material(HELD_OUT), Exported(HELD_OUT))
+            self.pass_indices.append(0)
+        return self._known[HELD_OUT["name"]]
 
     def _note(self, material, text):
         if self._notes is not None:

@@ -46,6 +46,11 @@ def is_unseen(instance, layer):
             or of_collection(shower_of(instance), "indirect_only_get", layer))
 
 
+def is_held_out(instance, layer):
+    """Whether an object is a hole in the picture."""
+    return instance.object.is_holdout or of_collection(shower_of(instance), "holdout_get", layer)
+
+
 def axes_of(matrix):
     """How many of its axes a matrix leaves: fewer than three where a scale is 0."""
     return sum(column.length_squared > 0 for column in matrix.to_3x3().col)
@@ -93,6 +98,7 @@ class MeshFile:
         self.glb = gltf.Glb()
         self.pass_indices, self.material_indices = [], []
         self.keys = []  # of the instances that became nodes, in their order
+        self.held_out = set()  # names of nodes
         self._notes, self._known, self._bakes = notes, known, bakes
         self._materials = materials.Exporter(self.glb, notes)
         self._meshes, self._begun = {}, {}
@@ -122,6 +128,8 @@ class MeshFile:
                 self.glb.add_node(shown.name, mesh, to_metres @ instance.matrix_world)
             else:
                 self.glb.add_moving_node(shown.name, mesh, motion.times, poses)
+            if is_held_out(instance, depsgraph.view_layer):
+                self.held_out.add(shown.name)
             self.pass_indices.append(shown.pass_index)
             self.keys.append(key_of(instance))
         self.material_indices = self._materials.pass_indices
@@ -131,7 +139,8 @@ class MeshFile:
         on from there when it is called again."""
         shown = instance.object
         variant = self._bakes.variant(instance, depsgraph) if self._bakes is not None else None
-        key = mesh_key(shown, depsgraph, variant)
+        is_hole = is_held_out(instance, depsgraph.view_layer)
+        key = (mesh_key(shown, depsgraph, variant), is_hole)
         if key not in self._meshes:
             slots = slots_of(shown, depsgraph)
             corners = self._begun.get(key) or self._known_corners(shown, depsgraph, len(slots))
@@ -140,7 +149,7 @@ class MeshFile:
                     corners = self._begun[key] = Corners(reading.mesh, len(slots))
                 while not corners.is_whole:
                     reading.go_on(corners.read_part)
-                parts = self._parts(shown, corners, slots, key)
+                parts = self._parts(shown, corners, slots, *key)
                 for part in parts:
                     if corners.lacks(part.exported):
                         reading.go_on(lambda mesh, part=part: corners.read(mesh, part.exported))
@@ -157,13 +166,15 @@ class MeshFile:
         is_usable = corners is not None and corners.slots == slots and _shows_its_own(shown, depsgraph)
         return corners if is_usable else None
 
-    def _parts(self, shown, corners, slots, key):
+    def _parts(self, shown, corners, slots, key, is_hole):
         """The materials of a mesh that are seen."""
         parts = []
         for index in corners.used_slots():
             material = slots[index] if slots else None
             if materials.is_clear(material):
                 self._materials.note_clear(material)
+            elif is_hole and materials.shows_surface(material):
+                parts.append(_Part(index, *self._materials.export_held_out()))
             elif materials.shows_surface(material):
                 baked = self._bakes.of(key, index) if self._bakes is not None else None
                 parts.append(_Part(index, *self._materials.export(material, baked)))

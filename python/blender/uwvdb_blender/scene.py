@@ -17,6 +17,7 @@ class Written:
 
     def __init__(self, path, bands, mesh_file, metres_per_unit, lamp_names, words):
         self.path, self.bands, self.words = path, bands, words
+        self.held_out = mesh_file.held_out
         self.pass_indices, self.material_indices = mesh_file.pass_indices, mesh_file.material_indices
         self.metres_per_unit, self.lamp_names = metres_per_unit, lamp_names
 
