@@ -18,7 +18,7 @@ from mathutils import Matrix
 from . import materials, meshes, program, trees
 
 VERSION = 1  # of what is kept: what was baked by others is baked anew
-LEAST_SIZE = 64
+LEAST_SIZE, VIEW_SIZE = 64, 256
 # Of instances that differ by more than their mesh; more of them look like one of these.
 MOST_OF_A_MESH = 32
 MOST_CORNERS = 4_000_000  # of a mesh that is unwrapped
@@ -27,6 +27,7 @@ START = 0xdeadbeef + (2 << 2) + 13
 BESIDE = 0.25  # of the picture, where a face whose middle is there may reach into it
 FILL = 0.5  # of a texture, by what is on it
 SECONDS_BETWEEN_LOOKS = 0.05
+FAILURES = (program.Failed, RuntimeError, OSError)
 
 
 def cache_folder():
@@ -83,7 +84,7 @@ class _Job:
     def __init__(self, material, channels, needs, part, shown, matrix, extra):
         self.material, self.channels, self.needs, self.part = material, channels, needs, part
         self.shown, self.matrix, self.extra = shown, matrix, extra
-        self.size = LEAST_SIZE
+        self.size = 1
         self.digest = self._digest()
 
     def _digest(self):
@@ -141,26 +142,42 @@ class Bakes:
     def make(self, depsgraph, seen, is_cancelled, on_progress):
         """Bakes what is not kept. `seen(points)` are the pixels per unit of length at points of the world, 0 where
         the camera does not look. Raises program.Stopped."""
+        missing = self.look(depsgraph, seen)
+        if missing:
+            work = Work(missing)
+            try:
+                _on_main_thread(lambda: work.hand_over(depsgraph.scene, self._threads), is_cancelled)
+                work.run(is_cancelled, on_progress)
+            except FAILURES as error:
+                self._notes.add(f"{work.names} could not be baked: {error}")
+            finally:
+                work.close()
+        self.find()
+
+    def look(self, depsgraph, seen=None):
+        """Plans, and returns what is not kept for a Work; without `seen`, in the size that views have."""
         for instance in meshes.surfaces(depsgraph):
             self._plan(instance, depsgraph, seen)
-        wanted = {}
-        for place, job in self._jobs.items():
-            wanted.setdefault(job.digest, []).append((place, job))
         missing = []
-        for digest, places in wanted.items():
-            size = max(job.size for _, job in places)
-            path = _kept(digest, size)
-            if path is None:
-                places[0][1].size = size
-                missing.append(places[0][1])
-        if missing:
-            self._bake(missing, depsgraph, is_cancelled, on_progress)
-        for digest, places in wanted.items():
-            path = _kept(digest, LEAST_SIZE, best=True)
+        for places in self._by_digest().values():
+            job, size = places[0][1], max(job.size for _, job in places)
+            if _kept(job.digest, size) is None:
+                job.size = size
+                missing.append(job)
+        return missing
+
+    def find(self):
+        """Reads what is kept of all that was looked at."""
+        for digest, places in self._by_digest().items():
+            path = _kept(digest, 1, best=True)
             for place, job in places if path is not None else ():
                 self._found[place] = _read(path, job)
-        if missing:
-            _forget_oldest()
+
+    def _by_digest(self):
+        result = {}
+        for place, job in self._jobs.items():
+            result.setdefault(job.digest, []).append((place, job))
+        return result
 
     def _plan(self, instance, depsgraph, seen):
         shown = instance.object
@@ -189,21 +206,56 @@ class Bakes:
                                     f"({', '.join(need[1].view)}) is as a camera sees it at right angles")
                 extra = _object_values(instance, need[1], matrix)
                 job = self._jobs[key, slot] = _Job(slots[slot], need[0], need[1], part, shown, matrix, extra)
-            job.size = max(job.size, job.part.size(matrix, seen, self._limit))
+            wanted = min(VIEW_SIZE, self._limit) if seen is None else job.part.size(matrix, seen, self._limit)
+            job.size = max(job.size, wanted)
 
-    def _bake(self, jobs, depsgraph, is_cancelled, on_progress):
-        folder = tempfile.mkdtemp(prefix="uwvdb-bake-")
+
+class Work:
+    """Jobs for a Blender that bakes. hand_over() needs Blender's data, run() does not."""
+
+    def __init__(self, jobs):
+        self._jobs, self._folder = jobs, tempfile.mkdtemp(prefix="uwvdb-bake-")
+        self.names = ", ".join(sorted({f"'{job.material.name}'" for job in jobs}))
+        self.digests = {job.digest for job in jobs}
+
+    def hand_over(self, scene, threads):
+        _write_materials(self._jobs, self._folder)
+        _write_job(self._jobs, self._folder, scene, threads)
+
+    def run(self, is_cancelled, on_progress):
+        arguments = [bpy.app.binary_path, "--background", "--factory-startup", "--python",
+                     str(pathlib.Path(__file__).with_name("bake_worker.py")), "--", self._folder]
+        program.run(arguments, self._folder, is_cancelled, on_progress)
+        _forget_oldest()
+
+    def close(self):
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+
+class InBackground:
+    """A Work that goes on while the view is drawn."""
+
+    def __init__(self, work):
+        self.work, self.error, self._is_cancelled = work, "", False
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+
+    @property
+    def is_done(self):
+        return not self._thread.is_alive()
+
+    def cancel(self):
+        self._is_cancelled = True
+
+    def _run(self):
         try:
-            _on_main_thread(lambda: _hand_over(jobs, folder), is_cancelled)
-            _write_job(jobs, folder, depsgraph.scene, self._threads)
-            arguments = [bpy.app.binary_path, "--background", "--factory-startup", "--python",
-                         str(pathlib.Path(__file__).with_name("bake_worker.py")), "--", folder]
-            program.run(arguments, folder, is_cancelled, on_progress)
-        except (program.Failed, RuntimeError, OSError) as error:
-            names = ", ".join(sorted({f"'{job.material.name}'" for job in jobs}))
-            self._notes.add(f"{names} could not be baked: {error}")
+            self.work.run(lambda: self._is_cancelled, lambda *_: None)
+        except program.Stopped:
+            pass
+        except FAILURES as error:
+            self.error = f"{self.work.names} could not be baked: {error}"
         finally:
-            shutil.rmtree(folder, ignore_errors=True)
+            self.work.close()
 
 
 class _Part:
@@ -404,7 +456,7 @@ def _on_main_thread(work, is_cancelled):
         raise failed[0]
 
 
-def _hand_over(jobs, folder):
+def _write_materials(jobs, folder):
     """Writes the materials, and the pixels that are in no file."""
     originals = {job.material.original for job in jobs}
     own = {material for material in originals if material.library is None}
