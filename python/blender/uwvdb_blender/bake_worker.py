@@ -21,12 +21,11 @@ import shaders  # noqa: E402
 
 UVS = "uwvdb bake"
 ISLAND_ANGLE = 1.15192  # 66 degrees, as Blender's own default
+GRID = 512  # points a side, at which overlaps are looked for
 CONSTANT = 1 / 1024  # a texture that varies less is a number
 NORMAL_CONSTANT = 1 / 255
 # Nodes that look around and are noisy; all others are exact at the texel's centre.
 SAMPLED = {"AMBIENT_OCCLUSION": 32, "BEVEL": 32}
-# Textures that are placed by Generated coordinates, or by the UV map, if nothing places them.
-BY_UVS = {"TEX_IMAGE"}
 
 
 def trees_of(tree, known=None):
@@ -200,26 +199,39 @@ def is_unique(thing, layer):
     areas = numpy.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
     if not 0.1 < areas.sum() < 1.001 or (areas < 1e-12).any():
         return False
-    return not overlap(a, b, c, areas)
+    return not overlap(a, b, c)
 
 
-def overlap(a, b, c, areas, points=64):
-    """Whether triangles cover a point of a grid twice: the sum of their areas and what they cover differ by more than
-    their borders can make."""
-    side = 512
-    counts = numpy.zeros((side, side), numpy.int32)
-    low = numpy.floor(numpy.minimum(numpy.minimum(a, b), c) * side - 0.5).astype(int).clip(0, side - 1)
-    high = numpy.ceil(numpy.maximum(numpy.maximum(a, b), c) * side - 0.5).astype(int).clip(0, side - 1)
-    if ((high - low + 1).prod(axis=1)).sum() > 40 * side * side + 16 * len(a):
-        return True
-    for first, second, third, (x0, y0), (x1, y1) in zip(a * side, b * side, c * side, low, high):
-        x, y = numpy.meshgrid(numpy.arange(x0, x1 + 1) + 0.5003, numpy.arange(y0, y1 + 1) + 0.5007)
-        sides = [(q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])
-                 for p, q in ((first, second), (second, third), (third, first))]
-        inside = ((sides[0] > 0) & (sides[1] > 0) & (sides[2] > 0)) | (
-            (sides[0] < 0) & (sides[1] < 0) & (sides[2] < 0))
-        counts[y0:y1 + 1, x0:x1 + 1] += inside
+def overlap(a, b, c, points=64):
+    """Whether triangles cover more points of a grid twice than their borders may, by rounding."""
+    a, b, c = (corner * GRID for corner in (a, b, c))
+    low = numpy.floor(numpy.minimum(numpy.minimum(a, b), c)).astype(int).clip(0, GRID - 1)
+    high = numpy.ceil(numpy.maximum(numpy.maximum(a, b), c)).astype(int).clip(0, GRID - 1)
+    extent = (high - low).max(axis=1) + 1
+    counts = numpy.zeros((GRID, GRID), numpy.int32)
+    for least, most in ((0, 4), (4, 16)):  # small ones all at once, point by point
+        some = numpy.flatnonzero((extent > least) & (extent <= most))
+        for dx in range(most):
+            for dy in range(most):
+                at = low[some] + (dx, dy)
+                inside = _inside(a[some], b[some], c[some], at[:, 0], at[:, 1]) & (at < GRID).all(axis=1)
+                numpy.add.at(counts, (at[inside, 1], at[inside, 0]), 1)
+    for number in numpy.flatnonzero(extent > 16):  # of which there are few without overlaps
+        (x0, y0), (x1, y1) = low[number], high[number]
+        x, y = numpy.meshgrid(numpy.arange(x0, x1 + 1), numpy.arange(y0, y1 + 1))
+        corners = (corner[number][None, None] for corner in (a, b, c))
+        counts[y0:y1 + 1, x0:x1 + 1] += _inside(*corners, x, y)
+        if (counts > 1).sum() > points:
+            return True
     return int((counts > 1).sum()) > points
+
+
+def _inside(a, b, c, x, y):
+    """Whether triangles have points of the grid, a little beside their corners, within."""
+    x, y = x + 0.5003, y + 0.5007
+    sides = [(q[..., 0] - p[..., 0]) * (y - p[..., 1]) - (q[..., 1] - p[..., 1]) * (x - p[..., 0])
+             for p, q in ((a, b), (b, c), (c, a))]
+    return ((sides[0] > 0) & (sides[1] > 0) & (sides[2] > 0)) | ((sides[0] < 0) & (sides[1] < 0) & (sides[2] < 0))
 
 
 def settle(trees, job, thing):
