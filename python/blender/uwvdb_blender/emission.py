@@ -6,7 +6,7 @@ import numpy
 from mathutils import Vector
 
 from . import bands as colours
-from .materials import output_of, source_of
+from .nodes import output_of, source_of
 
 # Blender makes a domain's temperature of its flame, above this.
 LEAST_FLAME, FULL_FLAME = 0.01, 2.0

@@ -141,7 +141,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
             self.update_stats("", "uwvdb: writing the scene")
             view = self._view(depsgraph)
             moments = self._moments(depsgraph)
-            written = scenes.write(depsgraph, file, path, view, size, moments, notes, self.test_break)
+            written = scenes.write(depsgraph, file, path, view, size, moments, notes, self.test_break,
+                                   self._on_progress)
             self._words = written.words
             if _export:
                 image = os.path.splitext(written.path)[0] + ".exr"
@@ -211,7 +212,8 @@ class UwvdbEngine(bpy.types.RenderEngine):
         arguments = self._arguments(depsgraph, path, written, size, out) + ["--size", "{}x{}".format(*size)]
         settings = depsgraph.scene.uwvdb
         arguments += ["--quality", settings.quality.lower()]
-        arguments += ["--layers", ",".join(passes.layers_of(depsgraph.view_layer, depsgraph.scene))]
+        arguments += ["--layers", ",".join(passes.layers_of(depsgraph.view_layer, depsgraph.scene,
+                                                               written.held_out))]
         if settings.integrator == "PATH" and settings.use_error:
             arguments += ["--error", repr(settings.error)]
         return arguments

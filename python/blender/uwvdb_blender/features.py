@@ -6,7 +6,9 @@ import itertools
 import numpy
 from mathutils import Vector
 
+from . import units, water
 from .meshes import SURFACES, UNKNOWN, domain_settings, of_collection, shower_of
+from .notes import Refusal
 
 RAYS = ("visible_diffuse", "visible_glossy", "visible_transmission", "visible_volume_scatter")
 # Of Blender's passes those that are made, and what are no passes.
@@ -63,11 +65,14 @@ def _background(world):
         for node in world.node_tree.nodes)
 
 
-def _world_volume(world):
-    if not world.use_nodes or world.node_tree is None:
+def _world_volume(world, scene):
+    """Whether a world has a volume shader that is not what World > Water has."""
+    if not water.has_volume(world):
         return False
-    output = world.node_tree.get_output_node("CYCLES") or world.node_tree.get_output_node("ALL")
-    return output is not None and output.inputs["Volume"].is_linked
+    try:
+        return not water.of_volume(world, units.metres_per_unit(scene)).are_of(world.uwvdb)
+    except Refusal:
+        return True
 
 
 def _shadowless(light):
@@ -108,7 +113,7 @@ TABLE = (
     Feature("shown", "not visible to cameras: left out, and so is its shadow", lambda o, by, s: not o.visible_camera),
     Feature("shown", "in a collection that is Indirect Only: left out, and so are its shadow and its light",
             lambda o, by, s: o.visible_camera and of_collection(by, "indirect_only_get", s.layer)),
-    Feature("shown", "shown like any other: holdouts, of objects and of collections, are left out",
+    Feature("plume", "shown like any other: holdouts of volumes, and of collections with them, are left out",
             lambda o, by, s: o.is_holdout or of_collection(by, "holdout_get", s.layer)),
     Feature("surface", "shown like any other: shadow catchers are left out", lambda o, by, s: o.is_shadow_catcher),
     Feature("shown", "casts a shadow here, although its Ray Visibility has none",
@@ -152,8 +157,8 @@ TABLE = (
         s.scene.render.use_multiview and c.type == "PANO" and c.stereo.use_spherical_stereo)),
     # The world.
     Feature("world", "the world's background gives no light under water", lambda w, s: _background(w)),
-    Feature("world", "the world's volume shader is left out: the water is that of World > Water",
-            lambda w, s: _world_volume(w)),
+    Feature("world", "the world's volume shader is left out: the water is that of World > Water, where From Volume "
+                     "Shader reads it", lambda w, s: _world_volume(w, s.scene)),
     # The view layer.
     Feature("layer", "View Layer > Filter is left out: surfaces, volumes and motion blur are shown",
             lambda v, s: not all(getattr(v, f"use_{kind}", True) for kind in ("solid", "volumes", "motion_blur"))),

@@ -74,17 +74,18 @@ def _own_file(image):
     return (data, kind) if kind else None
 
 
-def png(values):
-    """A PNG of 8 bits of values 0 to 1, (height, width, 3 or 4)."""
+def png(values, bits=8):
+    """A PNG of 8 or 16 bits of values 0 to 1, (height, width, 3 or 4)."""
     height, width, channels = values.shape
-    rows = numpy.empty((height, 1 + width * channels), numpy.uint8)
-    rows[:, 0] = 0  # no filter
-    rows[:, 1:] = numpy.rint(numpy.clip(values, 0, 1) * 255).reshape(height, -1)
+    levels = numpy.rint(numpy.clip(values, 0, 1) * (2**bits - 1)).astype(">u2" if bits == 16 else numpy.uint8)
+    levels = levels.reshape(height, -1).view(numpy.uint8)
+    rows = numpy.zeros((height, 1 + levels.shape[1]), numpy.uint8)  # begin with 0: no filter
+    rows[:, 1:] = levels
 
     def chunk(kind, data):
         check = zlib.crc32(kind + data)
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", check)
 
-    header = struct.pack(">2I5B", width, height, 8, 2 if channels == 3 else 6, 0, 0, 0)
+    header = struct.pack(">2I5B", width, height, bits, 2 if channels == 3 else 6, 0, 0, 0)
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
             + chunk(b"IDAT", zlib.compress(rows.tobytes(), 1)) + chunk(b"IEND", b""))

@@ -10,7 +10,7 @@ from mathutils import Vector
 
 from . import bands as colours
 from . import features, meshes
-from .materials import source_of
+from .nodes import output_of, source_of
 
 # Cycles multiplies an emission by a luminaire's candelas over this (candelas to watts at 555 nm and
 # the sphere's 4 pi, as its IES reader has them).
@@ -161,7 +161,7 @@ class Lamps:
             colour = [c * float(t) for c, t in zip(colour, light.temperature_color)]
         if not light.use_nodes or light.node_tree is None:
             return colour, None
-        output = light.node_tree.get_output_node("CYCLES") or light.node_tree.get_output_node("ALL")
+        output = output_of(light)
         found = source_of(output.inputs["Surface"]) if output is not None else None
         if found is None:
             return None
@@ -169,25 +169,17 @@ class Lamps:
         if node.type != "EMISSION":
             self._note(shown, f"only an Emission node is used, not {node.bl_label}")
             return colour, None
-        value, ies = float(node.inputs["Strength"].default_value), None
-        behind = source_of(node.inputs["Strength"])
+        strength = node.inputs["Strength"]
+        value, ies, behind = strength.default_value, None, source_of(strength)
         if behind is not None and behind[0].type == "TEX_IES":
-            self._unlinked(shown, behind[0].inputs["Strength"])
-            value = float(behind[0].inputs["Strength"].default_value)
             ies = self._ies(shown, behind[0])
-            if ies is None:
-                value = float(node.inputs["Strength"].default_value)
-        elif behind is not None and behind[0].type == "VALUE":
-            value = float(behind[0].outputs[0].default_value)
+            if ies is not None:
+                self._unlinked(shown, behind[0].inputs["Strength"])
+                value = behind[0].inputs["Strength"].default_value
         else:
-            self._unlinked(shown, node.inputs["Strength"])
-        tint = node.inputs["Color"].default_value
-        behind = source_of(node.inputs["Color"])
-        if behind is not None and behind[0].type == "RGB":
-            tint = behind[0].outputs[0].default_value
-        else:
-            self._unlinked(shown, node.inputs["Color"])
-        return [c * float(t) * value for c, t in zip(colour, tint)], ies
+            self._unlinked(shown, strength)
+        self._unlinked(shown, node.inputs["Color"])
+        return [c * float(t) * float(value) for c, t in zip(colour, node.inputs["Color"].default_value)], ies
 
     def _unlinked(self, shown, socket):
         if source_of(socket) is not None:

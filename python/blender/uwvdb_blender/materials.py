@@ -1,24 +1,48 @@
-"""Materials of Blender as those of glTF: of its nodes what uwvdb has, and notes about the rest."""
+"""Materials of Blender as those of glTF: of its nodes what uwvdb has, of the rest what was baked, and notes about what
+was not."""
 
 import math
 
+import bpy
 import numpy
 
-from . import images
+from . import images, shaders
+from .nodes import output_of, reachable, source_of
 
 # A dielectric of the index of water does not shine in it: what has no gloss gets this one.
 WATER_INDEX = 1.334
 DEFAULT = {"name": "default", "pbrMetallicRoughness": {
     "baseColorFactor": [0.8, 0.8, 0.8, 1], "metallicFactor": 0, "roughnessFactor": 1},
     "extensions": {"KHR_materials_ior": {"ior": WATER_INDEX}}}
+# What is held out gives no light, but stops it; alpha is made of the mattes afterwards (passes.py).
+HELD_OUT = {"name": "holdout", "pbrMetallicRoughness": {
+    "baseColorFactor": [0, 0, 0, 1], "metallicFactor": 0, "roughnessFactor": 1},
+    "extensions": {"KHR_materials_ior": {"ior": WATER_INDEX}}}
 WRAPS = {"REPEAT": 10497, "EXTEND": 33071, "CLIP": 33071, "MIRROR": 33648}
 
 
+CHANNELS = ("colour", "surface", "normal", "emission", "alpha")
+
+
 class Exported:
-    """A glTF material, and which maps of coordinates and colours of the mesh it needs."""
+    """A glTF material, and which maps of coordinates and colours of the mesh it needs: `uv_maps` are names, or the
+    bakes.Baked whose own coordinates they are."""
 
     def __init__(self, content):
         self.content, self.uv_maps, self.colours = content, [], None
+
+    @property
+    def uv_names(self):
+        return [name for name in self.uv_maps[:2] if isinstance(name, str)]
+
+
+def channels_to_bake(material):
+    """What of a material is lost without a bake: some of CHANNELS."""
+    if is_clear(material) or not shows_surface(material):
+        return set()
+    converter = Exporter(None, None)
+    converter.convert(material)
+    return converter.lost
 
 
 def shows_surface(material):
@@ -80,22 +104,6 @@ def is_exactly_clear(material):
     return colour is not None and not colour.is_linked and min(colour.default_value[:3]) == 1
 
 
-def output_of(material):
-    return material.node_tree.get_output_node("CYCLES") or material.node_tree.get_output_node("ALL")
-
-
-def source_of(socket):
-    """The (node, socket) that feeds a socket, through reroutes; None if nothing does."""
-    while socket.is_linked:
-        link = next((link for link in socket.links if link.is_valid and not link.is_muted), None)
-        if link is None:
-            return None
-        if link.from_node.type != "REROUTE":
-            return link.from_node, link.from_socket
-        socket = link.from_node.inputs[0]
-    return None
-
-
 def _multiplied(node):
     """The two sockets of colours that a node multiplies with full effect; None if it does something
     else."""
@@ -110,23 +118,54 @@ def _multiplied(node):
     return sockets if full and node.blend_type == "MULTIPLY" else None
 
 
+class _Unknown:
+    """Stands for nodes that colours cannot be read from."""
+
+    type = ""
+
+
+def _is_known(node):
+    """False for attributes that no mesh has as colours, such as those of objects."""
+    if node.type != "ATTRIBUTE":
+        return True
+    return node.attribute_type == "GEOMETRY" and any(
+        node.attribute_name in mesh.color_attributes for mesh in bpy.data.meshes)
+
+
 class Exporter:
+    """Without a file and notes it only finds out what is `lost`."""
+
     def __init__(self, glb, notes):
         self._glb, self._notes = glb, notes
         self._known, self._textures = {}, {}
+        self.lost, self._baked = set(), None
         self.pass_indices = []  # of the materials in the file's order
 
-    def export(self, material):
-        """(index in the file, Exported) of a material, or of none."""
-        key = material.name_full if material is not None else None
+    def export(self, material, baked=None):
+        """(index in the file, Exported) of a material, or of none; `baked` is the bakes.Baked of it on a mesh."""
+        key = (material.name_full if material is not None else None, baked)
         if key not in self._known:
-            done = Exported(dict(DEFAULT)) if material is None else self._convert(material)
+            done = Exported(dict(DEFAULT)) if material is None else self.convert(material, baked)
             self._known[key] = (self._glb.add_material(done.content), done)
             self.pass_indices.append(material.pass_index if material is not None else 0)
         return self._known[key]
 
+    def export_held_out(self):
+        """The same for surfaces of objects that are held out."""
+        if HELD_OUT["name"] not in self._known:
+            self._known[HELD_OUT["name"]] = (self._glb.add_material(HELD_OUT), Exported(HELD_OUT))
+            self.pass_indices.append(0)
+        return self._known[HELD_OUT["name"]]
+
     def _note(self, material, text):
-        self._notes.add(f"Material '{material.name}': {text}")
+        if self._notes is not None:
+            self._notes.add(f"Material '{material.name}': {text}")
+
+    def _lose(self, material, channels, text):
+        """Says what is lost, unless it was baked."""
+        self.lost.update(channels)
+        if not channels or self._baked is None or not set(channels) <= self._baked.wanted:
+            self._note(material, text)
 
     def note_clear(self, material):
         """Says what is missing of a material that is clear."""
@@ -134,7 +173,8 @@ class Exporter:
             self._note(material, "lets all light through, as if it were not there: its refraction, reflection and "
                                  "colour are left out")
 
-    def _convert(self, material):
+    def convert(self, material, baked=None):
+        self._baked = baked
         done = Exported({"name": material.name, "pbrMetallicRoughness": {}, "extensions": {}})
         if not material.use_nodes or material.node_tree is None:
             self._set_plain(done, material.diffuse_color, material.metallic, material.roughness,
@@ -151,7 +191,62 @@ class Exporter:
         if output.inputs["Volume"].is_linked:
             self._note(material, "its volume shader is left out")
         self._convert_shader(material, done, found[0])
+        if baked is not None:
+            self._set_baked(material, done, baked)
         return done
+
+    def _set_baked(self, material, done, baked):
+        """Puts what was baked in the place of what is lost."""
+        pbr = done.content["pbrMetallicRoughness"]
+        if "colour" in baked.channels:
+            factor, png = baked.factor("colour"), baked.png("colour")
+            done.colours = None
+            pbr["baseColorFactor"] = factor[:3] + [1] if factor is not None else [1, 1, 1, 1]
+            pbr.pop("baseColorTexture", None)
+            if png is not None:
+                pbr["baseColorTexture"] = self._baked_texture(done, baked, png)
+            if "alpha" in baked.wanted:
+                self._set_baked_alpha(material, done, factor, png)
+        if "surface" in baked.channels:
+            factor, png = baked.factor("surface"), baked.png("surface")
+            pbr["roughnessFactor"], pbr["metallicFactor"] = factor if factor is not None else (1.0, 1.0)
+            pbr.pop("metallicRoughnessTexture", None)
+            if png is not None:
+                pbr["metallicRoughnessTexture"] = self._baked_texture(done, baked, png)
+        if "normal" in baked.wanted:
+            done.content.pop("normalTexture", None)
+            if baked.png("normal") is not None:
+                done.content["normalTexture"] = self._baked_texture(done, baked, baked.png("normal"))
+        if "emission" in baked.channels:
+            self._set_baked_emission(done, baked)
+
+    def _set_baked_alpha(self, material, done, factor, png):
+        alpha = factor[3] if factor is not None and len(factor) > 3 else 1.0
+        if png is not None or alpha < 0.5:
+            done.content["alphaMode"] = "MASK"
+            done.content["alphaCutoff"] = float(getattr(material, "alpha_threshold", 0.5))
+            done.content["pbrMetallicRoughness"]["baseColorFactor"][3] = alpha
+        elif alpha < 1:
+            self._note(material, "is opaque here: only cut-outs by a texture are supported")
+
+    def _set_baked_emission(self, done, baked):
+        for name in ("emissiveTexture", "emissiveFactor"):
+            done.content.pop(name, None)
+        done.content["extensions"].pop("KHR_materials_emissive_strength", None)
+        factor, png = baked.factor("emission"), baked.png("emission")
+        strength = max(factor) if factor is not None else baked.emission_strength
+        if strength <= 0:
+            return
+        done.content["emissiveFactor"] = [part / strength for part in factor] if factor is not None else [1, 1, 1]
+        done.content["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": strength}
+        if png is not None:
+            done.content["emissiveTexture"] = self._baked_texture(done, baked, png)
+
+    def _baked_texture(self, done, baked, png):
+        if baked not in done.uv_maps:
+            done.uv_maps.append(baked)
+        sampler = {"wrapS": WRAPS["EXTEND"], "wrapT": WRAPS["EXTEND"], "magFilter": 9729}
+        return {"index": self._glb.add_texture(png, "image/png", sampler), "texCoord": done.uv_maps.index(baked)}
 
     def _set_plain(self, done, colour, metallic, roughness, ior):
         done.content["pbrMetallicRoughness"].update(
@@ -160,7 +255,9 @@ class Exporter:
         done.content["extensions"]["KHR_materials_ior"] = {"ior": ior}
 
     def _convert_shader(self, material, done, node):
-        if node.type == "BSDF_PRINCIPLED":
+        if node.type in shaders.MIXTURES:
+            self._convert_mixture(material, done, node)
+        elif node.type == "BSDF_PRINCIPLED":
             self._convert_principled(material, done, node)
         elif node.type == "BSDF_DIFFUSE":
             self._set_plain(done, (1, 1, 1, 1), 0, 1, WATER_INDEX)
@@ -168,46 +265,74 @@ class Exporter:
             self._set_normal(material, done, node.inputs["Normal"])
         elif node.type == "BSDF_GLOSSY":
             self._set_plain(done, (1, 1, 1, 1), 1, node.inputs["Roughness"].default_value, 1.5)
+            if node.inputs["Roughness"].is_linked:
+                self._lose(material, ("surface",), "the nodes behind 'Roughness' are left out; its own value is taken")
             self._set_colour(material, done, node.inputs["Color"])
             self._set_normal(material, done, node.inputs["Normal"])
         elif node.type == "EMISSION":
             self._set_plain(done, (0, 0, 0, 1), 0, 1, WATER_INDEX)
             self._set_emission(material, done, node.inputs["Color"], node.inputs["Strength"])
-        elif node.type == "MIX_SHADER":
-            self._convert_mix(material, done, node)
+        else:
+            self._convert_others(material, done, node)
+
+    def _convert_others(self, material, done, node):
+        """Shaders that are as matt, or as mirrors, as these."""
+        surface = shaders.merged([(1.0, node)])
+        if surface is not None:
+            self._set_surface(material, done, surface, [node])
+        elif node.type in shaders.SHADERS:
+            self._set_plain(done, (0.8, 0.8, 0.8, 1), 0, 1, _index_of([node]))
+            self._lose(material, CHANNELS, f"uwvdb has no {node.bl_label} shader; the material is a grey diffuse")
         else:
             self._note(material, f"uwvdb has no {node.bl_label} shader; the material is a grey diffuse")
             self._set_plain(done, (0.8, 0.8, 0.8, 1), 0, 1, WATER_INDEX)
 
-    def _convert_mix(self, material, done, node):
-        """Transparent mixed with another shader by a texture's alpha is a cut-out, as Principled has
-        it itself."""
-        shaders = [source_of(node.inputs[1]), source_of(node.inputs[2])]
-        if all(shaders) and shaders[0][0].type == "BSDF_TRANSPARENT":
-            self._convert_shader(material, done, shaders[1][0])
+    def _set_surface(self, material, done, surface, nodes):
+        """A Surface that is the same everywhere."""
+        self._set_plain(done, surface.colour, min(surface.metallic, 1), min(max(surface.roughness, 0), 1),
+                        _index_of(nodes))
+        if surface.alpha < 1:
+            self._note(material, "is opaque here: only cut-outs by a texture are supported")
+        strength = max(surface.emission)
+        if strength > 0:
+            done.content["emissiveFactor"] = [max(part, 0) / strength for part in surface.emission]
+            done.content["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": strength}
+
+    def _convert_mixture(self, material, done, node):
+        """Shaders mixed by numbers are one, if they are numbers themselves. Transparent mixed with another one by a
+        texture's alpha is a cut-out, as Principled has it itself."""
+        parts = shaders.parts_of(node)
+        if parts is not None:
+            if len(parts) == 1 and abs(parts[0][0] - 1) < 1e-6:
+                self._convert_shader(material, done, parts[0][1])
+                return
+            surface = shaders.merged(parts)
+            if surface is not None:
+                self._set_surface(material, done, surface, [found for _, found in parts])
+                return
+        sources = [source_of(socket) for socket in node.inputs if socket.type == "SHADER"]
+        if node.type == "MIX_SHADER" and all(sources) and sources[0][0].type == "BSDF_TRANSPARENT":
+            self._convert_shader(material, done, sources[1][0])
             self._set_alpha(material, done, node.inputs[0])
             return
-        self._note(material, "mixed shaders are not supported; the first that uwvdb has is taken")
-        kinds = ("BSDF_PRINCIPLED", "BSDF_DIFFUSE", "BSDF_GLOSSY", "EMISSION", "MIX_SHADER")
-        found = next((s[0] for s in shaders if s is not None and s[0].type in kinds), None)
+        kinds = ("BSDF_PRINCIPLED", "BSDF_DIFFUSE", "BSDF_GLOSSY", "EMISSION", *shaders.MIXTURES)
+        found = next((s[0] for s in sources if s is not None and s[0].type in kinds), None)
+        lost, self.lost = self.lost, set()
+        notes, self._notes = self._notes, None  # of one of them nothing has to be said
         if found is None:
             self._set_plain(done, (0.8, 0.8, 0.8, 1), 0, 1, WATER_INDEX)
         else:
             self._convert_shader(material, done, found)
+        self.lost, self._notes = lost, notes
+        done.content["extensions"]["KHR_materials_ior"] = {"ior": _index_of(reachable(node))}
+        self._lose(material, CHANNELS, "mixed shaders are not supported; the first that uwvdb has is taken")
 
     def _convert_principled(self, material, done, node):
         inputs = node.inputs
-        specular = inputs.get("Specular IOR Level") or inputs["Specular"]
-        self._unlinked(material, specular)
-        # Specular 0.5 means 4 % in air, Fresnel's for the index 1.5; Blender 4 scales that of IOR.
-        f0 = 0.08 * float(specular.default_value)
+        self._unlinked(material, inputs.get("Specular IOR Level") or inputs["Specular"])
         if "Specular IOR Level" in inputs:
             self._unlinked(material, inputs["IOR"])
-            ior = float(inputs["IOR"].default_value)
-            f0 = ((ior - 1) / (ior + 1)) ** 2 * 2 * float(specular.default_value)
-        root = math.sqrt(min(max(f0, 0), 0.9))
-        ior = (1 + root) / (1 - root) if f0 > 0 else WATER_INDEX
-        self._set_plain(done, (1, 1, 1, 1), 0, 1, max(ior, 1))
+        self._set_plain(done, (1, 1, 1, 1), 0, 1, _index_of([node]))
         self._set_colour(material, done, inputs["Base Color"])
         self._set_roughness(material, done, inputs["Roughness"], inputs["Metallic"])
         self._set_normal(material, done, inputs["Normal"])
@@ -222,9 +347,9 @@ class Exporter:
             if socket is not None and (socket.is_linked or socket.default_value > 0):
                 self._note(material, f"{what} is left out")
 
-    def _unlinked(self, material, socket):
+    def _unlinked(self, material, socket, *channels):
         if source_of(socket) is not None:
-            self._note(material, f"the nodes behind '{socket.name}' are left out; its own value is taken")
+            self._lose(material, channels, f"the nodes behind '{socket.name}' are left out; its own value is taken")
 
     def _set_colour(self, material, done, socket):
         pbr = done.content["pbrMetallicRoughness"]
@@ -234,7 +359,7 @@ class Exporter:
         texture = None
         if len(pictures) <= 1 and len(paints) <= 1 and len(pictures) + len(paints) == len(sources):
             if pictures:
-                texture = self._texture(material, done, pictures[0], images.colour_file, "sRGB")
+                texture = self._texture(material, done, pictures[0], images.colour_file, "sRGB", "colour")
             if texture is not None or not pictures:
                 pbr["baseColorFactor"] = factor + [1]
                 if texture is not None:
@@ -243,32 +368,20 @@ class Exporter:
                     done.colours = (node.layer_name if node.type == "VERTEX_COLOR"
                                     else node.attribute_name)
                 return
-        self._unlinked(material, socket)
+        self._unlinked(material, socket, "colour")
         pbr["baseColorFactor"] = [min(max(c, 0), 1) for c in socket.default_value[:3]] + [1]
 
     def _product(self, socket):
         """(colour, nodes) whose product a socket gets, through nodes that multiply with full effect."""
         found = source_of(socket)
-        colour = self._constant(socket, found)
-        if colour is not None:
-            return colour, []
+        if found is None:
+            return [min(max(float(part), 0), 1) for part in socket.default_value[:3]], []
         node = found[0]
         sockets = _multiplied(node)
         if sockets is None:
-            return [1.0, 1.0, 1.0], [node]
+            return [1.0, 1.0, 1.0], [node if found[1].type == "RGBA" and _is_known(node) else _Unknown]
         (first, nodes), (second, others) = (self._product(socket) for socket in sockets)
         return [x * y for x, y in zip(first, second)], nodes + others
-
-    @staticmethod
-    def _constant(socket, found):
-        """The colour of an unlinked socket, or of an RGB node."""
-        if found is None:
-            values = socket.default_value
-        elif found[0].type == "RGB":
-            values = found[1].default_value
-        else:
-            return None
-        return [min(max(float(c), 0), 1) for c in values[:3]]
 
     def _set_roughness(self, material, done, roughness, metallic):
         """glTF has both in one image: roughness in green, metal in blue."""
@@ -279,10 +392,14 @@ class Exporter:
         if not any(sources):
             return
         nodes = [source[0] for source in sources if source]
+        if len({(node.image.name_full, self._where(node)) for node in nodes}) > 1 and any(
+                self._where(node) != self._where(nodes[0]) for node in nodes):
+            self._lose(material, ("surface",), "roughness and metal have textures that are placed differently: both "
+                                               "are placed as the first")
         size = max((node.image.size[:] for node in nodes), key=lambda wh: wh[0] * wh[1])
-        values = numpy.ones((size[1], size[0], 3), numpy.float32)
+        values = numpy.ones((size[1], size[0], 3) if self._glb is not None else (1, 1, 3), numpy.float32)
         for at, key, source in ((1, "roughnessFactor", sources[0]), (2, "metallicFactor", sources[1])):
-            if source:
+            if source and self._glb is not None:
                 node, channel = source
                 pixels = images.data_pixels(node.image)
                 rows = numpy.arange(size[1]) * pixels.shape[0] // size[1]
@@ -290,7 +407,7 @@ class Exporter:
                 values[..., at] = channel(pixels)[rows[:, None], columns[None, :]]
                 pbr[key] = 1.0
         texture = self._texture(material, done, nodes[0], lambda _: (images.png(values), "image/png"),
-                                f"roughness {material.name_full}")
+                                f"roughness {material.name_full}", "surface")
         if texture is not None:
             pbr["metallicRoughnessTexture"] = texture
 
@@ -311,8 +428,14 @@ class Exporter:
             # A colour becomes a number by its luminance.
             weights = numpy.array([0.2126, 0.7152, 0.0722], numpy.float32)
             return node, lambda pixels: pixels[..., :3] @ weights
-        self._unlinked(material, socket)
+        self._unlinked(material, socket, "surface")
         return None
+
+    @staticmethod
+    def _where(node):
+        """What an image is placed by, for comparison."""
+        found = source_of(node.inputs["Vector"])
+        return (found[0].key, found[1].name) if found is not None else None
 
     @staticmethod
     def _is_image(node):
@@ -325,16 +448,19 @@ class Exporter:
         node = found[0]
         inner = source_of(node.inputs["Color"]) if node.type == "NORMAL_MAP" else None
         if inner is None or not self._is_image(inner[0]) or node.space != "TANGENT":
-            self._note(material, f"the only bumps supported are tangent-space normal maps; "
-                                 f"the {node.bl_label} node is left out")
+            self._lose(material, ("normal",), "the only bumps supported are tangent-space normal maps; "
+                                              f"the {node.bl_label} node is left out")
             return
-        texture = self._texture(material, done, inner[0], images.data_file, "data")
+        if node.inputs["Strength"].is_linked:
+            self._unlinked(material, node.inputs["Strength"], "normal")
+        texture = self._texture(material, done, inner[0], images.data_file, "data", "normal")
         if texture is not None:
             texture["scale"] = float(node.inputs["Strength"].default_value)
             done.content["normalTexture"] = texture
 
     def _set_emission(self, material, done, colour, strength):
-        self._unlinked(material, strength)
+        if not (colour.source is None and max(colour.default_value[:3]) <= 0):
+            self._unlinked(material, strength, "emission")
         value = float(strength.default_value)
         if value < 0:
             self._note(material, "takes no light away: its negative emission is left out")
@@ -344,9 +470,9 @@ class Exporter:
         if sources:
             texture = None
             if len(sources) == 1 and self._is_image(sources[0]):
-                texture = self._texture(material, done, sources[0], images.colour_file, "sRGB")
+                texture = self._texture(material, done, sources[0], images.colour_file, "sRGB", "emission")
             if texture is None:
-                self._unlinked(material, colour)
+                self._unlinked(material, colour, "emission")
                 constant = list(colour.default_value[:3])
             else:
                 done.content["emissiveTexture"] = texture
@@ -365,35 +491,37 @@ class Exporter:
         base = pbr.get("baseColorTexture")
         known = self._textures.get((node.image.name_full, "sRGB")) if self._is_image(node) else None
         if known is None or output.name != "Alpha" or base is None or base["index"] not in known:
-            self._note(material, "is opaque here: alpha has to be that of the base colour's texture")
+            self._lose(material, ("colour", "alpha"),
+                       "is opaque here: alpha has to be that of the base colour's texture")
             return
         done.content["alphaMode"] = "MASK"
         done.content["alphaCutoff"] = float(getattr(material, "alpha_threshold", 0.5))
 
-    def _texture(self, material, done, node, file_of, use):
+    def _texture(self, material, done, node, file_of, use, channel):
         """glTF's reference to the texture of an image node, or None with a note."""
-        image = node.image
+        image, lost = node.image, (channel,)
         if image.source in ("TILED", "MOVIE", "SEQUENCE"):
             kind = {"TILED": "tiles (UDIM)", "MOVIE": "a movie", "SEQUENCE": "a sequence"}[image.source]
-            self._note(material, f"image '{image.name}' is {kind}, which uwvdb does not have")
+            self._lose(material, lost, f"image '{image.name}' is {kind}, which uwvdb does not have")
             return None
         if node.projection != "FLAT":
-            self._note(material, f"image '{image.name}' is projected as {node.projection.lower()}, "
-                                 "but uwvdb needs texture coordinates (UV)")
+            self._lose(material, lost, f"image '{image.name}' is projected as {node.projection.lower()}, "
+                                       "but uwvdb needs texture coordinates (UV)")
             return None
-        place = self._placement(material, node)
+        place = self._placement(material, node, lost)
         if place is None:
             return None
         if image.size[0] == 0:
             self._note(material, f"image '{image.name}' cannot be loaded")
             return None
         if node.extension == "CLIP":
-            self._note(material, f"image '{image.name}' continues beyond its edge: the extension Clip is not supported")
+            self._lose(material, lost,
+                       f"image '{image.name}' continues beyond its edge: the extension Clip is not supported")
         uv_map, transform = place
         if uv_map not in done.uv_maps:
             done.uv_maps.append(uv_map)
         if len(done.uv_maps) > 2:
-            self._note(material, "more than two UV maps; the further ones are left out")
+            self._lose(material, lost, "more than two UV maps; the further ones are left out")
             return None
         wrap = WRAPS[node.extension]
         key = (image.name_full, use)
@@ -404,14 +532,14 @@ class Exporter:
             if kept == sampler:
                 break
         else:
-            index = self._glb.add_texture(*file_of(image), sampler)
+            index = self._glb.add_texture(*file_of(image), sampler) if self._glb is not None else len(variants)
             variants[index] = sampler
         texture = {"index": index, "texCoord": done.uv_maps.index(uv_map)}
         if transform:
             texture["extensions"] = {"KHR_texture_transform": transform}
         return texture
 
-    def _placement(self, material, node):
+    def _placement(self, material, node, lost):
         """(name of the UV map, '' for the active one; glTF's transform or None) of an image node."""
         found = source_of(node.inputs["Vector"])
         if found is None:
@@ -421,16 +549,16 @@ class Exporter:
             mapping = found[0]
             transform = self._transform(mapping)
             if transform is None:
-                self._note(material, f"the Mapping node of image '{node.image.name}' is left out: it "
-                                     "has to be a Point mapping by numbers, turned about z alone")
+                self._lose(material, lost, f"the Mapping node of image '{node.image.name}' is left out: it "
+                                           "has to be a Point mapping by numbers, turned about z alone")
                 transform = {}
             found = source_of(mapping.inputs["Vector"])
         if found is not None and found[0].type == "UVMAP":
             return found[0].uv_map, transform
         if found is not None and (found[0].type, found[1].name) == ("TEX_COORD", "UV"):
             return "", transform
-        self._note(material, f"image '{node.image.name}' is not placed by texture coordinates (UV) and "
-                             "is left out")
+        self._lose(material, lost, f"image '{node.image.name}' is not placed by texture coordinates (UV) and "
+                                   "is left out")
         return None
 
     @staticmethod
@@ -447,3 +575,24 @@ class Exporter:
         return {"scale": [scale[0], scale[1]], "rotation": rotation[2],
                 "offset": [location[0] - sine * scale[1],
                            1 - location[1] - cosine * scale[1]]}
+
+
+def _index_of(nodes):
+    """The refractive index of shaders: that of the first with gloss, or water's."""
+    for node in nodes:
+        if node.type == "BSDF_PRINCIPLED":
+            return _index_of_principled(node.inputs)
+        if node.type in shaders.SHADERS and shaders.SHADERS[node.type].has_gloss:
+            return 1.5
+    return WATER_INDEX
+
+
+def _index_of_principled(inputs):
+    """Specular 0.5 means 4 % in air, Fresnel's for the index 1.5; Blender 4 scales that of IOR."""
+    specular = inputs.get("Specular IOR Level") or inputs["Specular"]
+    f0 = 0.08 * float(specular.default_value)
+    if "Specular IOR Level" in inputs:
+        ior = float(inputs["IOR"].default_value)
+        f0 = ((ior - 1) / (ior + 1)) ** 2 * 2 * float(specular.default_value)
+    root = math.sqrt(min(max(f0, 0), 0.9))
+    return max((1 + root) / (1 - root), 1) if f0 > 0 else WATER_INDEX

@@ -46,9 +46,33 @@ def is_unseen(instance, layer):
             or of_collection(shower_of(instance), "indirect_only_get", layer))
 
 
+def is_held_out(instance, layer):
+    """Whether an object is a hole in the picture."""
+    return instance.object.is_holdout or of_collection(shower_of(instance), "holdout_get", layer)
+
+
 def axes_of(matrix):
     """How many of its axes a matrix leaves: fewer than three where a scale is 0."""
     return sum(column.length_squared > 0 for column in matrix.to_3x3().col)
+
+
+def may_deform(shown):
+    """Whether an object's vertices may move against each other."""
+    data = shown.original.data
+    return (len(shown.original.modifiers) > 0 or getattr(data, "shape_keys", None) is not None
+            or getattr(data, "animation_data", None) is not None or shown.type == "META")
+
+
+def slots_of(shown, depsgraph):
+    """The materials of an object's slots."""
+    override = depsgraph.view_layer.material_override
+    return (override,) if override is not None else tuple(s.material for s in shown.material_slots)
+
+
+def mesh_key(shown, depsgraph, variant=None):
+    """What is the same of objects that show the same mesh. `variant` tells those apart whose materials differ."""
+    return (shown.type, shown.data.as_pointer(), shown.data.name_full, variant,
+            tuple(m.name_full if m is not None else "" for m in slots_of(shown, depsgraph)))
 
 
 def surfaces(depsgraph):
@@ -68,13 +92,14 @@ class MeshFile:
     """The file, and what its numbers of objects and materials stand for in Blender. What must be read from
     Blender is read by read_some() and add_all(), all else is done when the file is written."""
 
-    def __init__(self, notes, known=None):
+    def __init__(self, notes, known=None, bakes=None):
         """`known` is what earlier files have read of objects that did not change since, by name; what this
-        one reads is added."""
+        one reads is added. `bakes` is a bakes.Bakes or None."""
         self.glb = gltf.Glb()
         self.pass_indices, self.material_indices = [], []
         self.keys = []  # of the instances that became nodes, in their order
-        self._notes, self._known = notes, known
+        self.held_out = set()  # names of nodes
+        self._notes, self._known, self._bakes = notes, known, bakes
         self._materials = materials.Exporter(self.glb, notes)
         self._meshes, self._begun = {}, {}
 
@@ -87,7 +112,7 @@ class MeshFile:
         end = time.monotonic() + seconds
         try:
             for instance in surfaces(depsgraph):
-                self._mesh(instance.object, depsgraph, end)
+                self._mesh(instance, depsgraph, end)
         except _TimeIsUp:
             return False
         return True
@@ -95,7 +120,7 @@ class MeshFile:
     def add_all(self, depsgraph, to_metres, motion):
         for instance in surfaces(depsgraph):
             shown = instance.object
-            mesh = self._mesh(shown, depsgraph)
+            mesh = self._mesh(instance, depsgraph)
             if mesh is None:
                 continue
             poses = motion.poses(key_of(instance)) if motion is not None else None
@@ -103,33 +128,28 @@ class MeshFile:
                 self.glb.add_node(shown.name, mesh, to_metres @ instance.matrix_world)
             else:
                 self.glb.add_moving_node(shown.name, mesh, motion.times, poses)
+            if is_held_out(instance, depsgraph.view_layer):
+                self.held_out.add(shown.name)
             self.pass_indices.append(shown.pass_index)
             self.keys.append(key_of(instance))
         self.material_indices = self._materials.pass_indices
 
-    @staticmethod
-    def _slots(shown, depsgraph):
-        override = depsgraph.view_layer.material_override
-        return (override,) if override is not None else tuple(s.material for s in shown.material_slots)
-
-    def _key(self, shown, depsgraph):
-        """What is the same of objects that show the same mesh."""
-        return (shown.type, shown.data.as_pointer(), shown.data.name_full,
-                tuple(m.name_full if m is not None else "" for m in self._slots(shown, depsgraph)))
-
-    def _mesh(self, shown, depsgraph, end=math.inf):
+    def _mesh(self, instance, depsgraph, end=math.inf):
         """Its number in the file; None if nothing of it is seen. Raises _TimeIsUp after that time, and goes
         on from there when it is called again."""
-        key = self._key(shown, depsgraph)
+        shown = instance.object
+        variant = self._bakes.variant(instance, depsgraph) if self._bakes is not None else None
+        is_hole = is_held_out(instance, depsgraph.view_layer)
+        key = (mesh_key(shown, depsgraph, variant), is_hole)
         if key not in self._meshes:
-            slots = self._slots(shown, depsgraph)
+            slots = slots_of(shown, depsgraph)
             corners = self._begun.get(key) or self._known_corners(shown, depsgraph, len(slots))
             with _Reading(shown, end) as reading:
                 if corners is None or not corners.is_whole and not corners.is_of(reading.mesh):
-                    corners = self._begun[key] = _Corners(reading.mesh, len(slots))
+                    corners = self._begun[key] = Corners(reading.mesh, len(slots))
                 while not corners.is_whole:
                     reading.go_on(corners.read_part)
-                parts = self._parts(shown, corners, slots)
+                parts = self._parts(shown, corners, slots, *key)
                 for part in parts:
                     if corners.lacks(part.exported):
                         reading.go_on(lambda mesh, part=part: corners.read(mesh, part.exported))
@@ -146,22 +166,25 @@ class MeshFile:
         is_usable = corners is not None and corners.slots == slots and _shows_its_own(shown, depsgraph)
         return corners if is_usable else None
 
-    def _parts(self, shown, corners, slots):
+    def _parts(self, shown, corners, slots, key, is_hole):
         """The materials of a mesh that are seen."""
         parts = []
         for index in corners.used_slots():
             material = slots[index] if slots else None
             if materials.is_clear(material):
                 self._materials.note_clear(material)
+            elif is_hole and materials.shows_surface(material):
+                parts.append(_Part(index, *self._materials.export_held_out()))
             elif materials.shows_surface(material):
-                parts.append(_Part(index, *self._materials.export(material)))
+                baked = self._bakes.of(key, index) if self._bakes is not None else None
+                parts.append(_Part(index, *self._materials.export(material, baked)))
             else:
                 self._notes.add(f"the volume of '{shown.name}' is left out: its material has a volume "
                                 "shader, but uwvdb takes Volume objects and fluid domains")
         return parts
 
     def _note_missing(self, shown, corners, exported):
-        for name in exported.uv_maps[:2]:
+        for name in exported.uv_names:
             if corners.uv_maps[name] is None:
                 self._notes.add(f"'{shown.name}' has no UV map {name!r} for its textures")
         if exported.colours is not None and corners.colours[exported.colours] is None:
@@ -213,7 +236,7 @@ class _Reading:
         read(self.mesh)
 
 
-class _Corners:
+class Corners:
     """What the corners of a mesh's faces have. Blender's own data do not stay, and reading them is slow: what
     can be told without it is not read, and they are read in parts."""
 
@@ -275,14 +298,37 @@ class _Corners:
             return []
         return [0] if self._which is None else numpy.flatnonzero(numpy.bincount(self._which)).tolist()
 
+    @property
+    def totals(self):
+        """Corners of each face."""
+        return self._totals
+
+    def faces_of(self, slot):
+        """(numbers of the corners, numbers of the vertices, numbers of the faces, arrays) of the faces of one material,
+        by themselves: positions, corners as numbers of these, the first corner of each face, normals of the corners.
+        None if there are none."""
+        faces = numpy.arange(len(self._totals))
+        if self._which is not None:
+            firsts = numpy.cumsum(self._totals - 2) - (self._totals - 2)
+            faces = numpy.flatnonzero(self._which[firsts] == slot)
+        totals = self._totals[faces]
+        if len(faces) == 0 or slot > 0 and self._which is None:
+            return None
+        starts = (numpy.cumsum(totals) - totals).astype(numpy.int32)
+        loops = numpy.repeat(self._starts[faces] - starts, totals) + numpy.arange(totals.sum())
+        vertices, corners = numpy.unique(self._vertices[loops], return_inverse=True)
+        return loops, vertices, faces, {
+            "positions": self._positions[vertices], "corners": corners.astype(numpy.int32).reshape(-1),
+            "starts": starts, "normals": self._corner_normals(loops)}
+
     def lacks(self, exported):
-        return (any(name not in self.uv_maps for name in exported.uv_maps[:2])
+        return (any(name not in self.uv_maps for name in exported.uv_names)
                 or exported.colours is not None and exported.colours not in self.colours)
 
     def read(self, mesh, exported):
         """Reads what a material needs besides."""
         layers = mesh.uv_layers
-        for name in exported.uv_maps[:2]:
+        for name in exported.uv_names:
             if name not in self.uv_maps:
                 layer = layers.get(name) if name else next((l for l in layers if l.active_render), None)
                 self.uv_maps[name] = None if layer is None else _read(layer.data, "uv", 2, numpy.float32)
@@ -341,8 +387,9 @@ class _Corners:
         yield "NORMAL", self._corner_normals(used)
         for at, name in enumerate(exported.uv_maps[:2]):
             values = numpy.zeros((len(vertices), 2), numpy.float32)
-            if self.uv_maps[name] is not None:
-                values[:] = self.uv_maps[name][used]
+            known = self.uv_maps[name] if isinstance(name, str) else name.uvs
+            if known is not None:
+                values[:] = known[used]
                 values[:, 1] = 1 - values[:, 1]
             yield f"TEXCOORD_{at}", values
         if exported.colours is not None and self.colours[exported.colours] is not None:

@@ -25,7 +25,7 @@ class Motion:
             shown = instance.object
             if shown.type in meshes.SURFACES or shown.type == "LIGHT":
                 known[meshes.key_of(instance)] = to_metres @ instance.matrix_world
-            if shown.type in meshes.SURFACES and _may_deform(shown):
+            if shown.type in meshes.SURFACES and meshes.may_deform(shown):
                 shapes = self._shapes.setdefault(shown.name_full, {})
                 if at not in shapes:
                     shapes[at] = _shape(shown)
@@ -71,12 +71,6 @@ class Motion:
 
     def camera_matrices(self, key):
         return self._of(key)
-
-
-def _may_deform(shown):
-    data = shown.original.data
-    return (len(shown.original.modifiers) > 0 or getattr(data, "shape_keys", None) is not None
-            or getattr(data, "animation_data", None) is not None or shown.type == "META")
 
 
 def _shape(shown):

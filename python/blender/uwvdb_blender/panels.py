@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import meshes, preferences, program, volumes
+from . import meshes, preferences, program, units, volumes, water
 from .notes import Refusal
 from .words import Words
 
@@ -70,6 +70,7 @@ class UWVDB_PT_render(RenderPanel, bpy.types.Panel):
             part.prop(settings, "error", text="")
         column.prop(settings, "bands")
         column.prop(settings, "use_gloss")
+        column.prop(settings, "bake_size")
         column.prop(settings, "threads")
         column.prop(context.scene.render, "preview_pixel_size", text="Viewport Pixels")
         column.prop(settings, "kept_in")
@@ -133,6 +134,8 @@ class UWVDB_PT_water(_Panel, bpy.types.Panel):
     def draw(self, context):
         settings, column = context.world.uwvdb, self.begin()
         column.prop(settings, "kind")
+        if water.has_volume(context.world):
+            column.operator("uwvdb.water_from_volume")
         if settings.kind == "NONE":
             return
         if settings.kind == "COEFFICIENTS":
@@ -271,6 +274,28 @@ class UWVDB_PT_light(_Panel, bpy.types.Panel):
             column.prop(light, "spot_blend", slider=True)
 
 
+class UWVDB_OT_water_from_volume(bpy.types.Operator):
+    """Make water of the world's volume shader: its absorption, scattering and anisotropy"""
+    bl_idname, bl_label = "uwvdb.water_from_volume", "From Volume Shader"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context):
+        return water.has_volume(context.scene.world)
+
+    def execute(self, context):
+        world = context.scene.world
+        try:
+            found = water.of_volume(world, units.metres_per_unit(context.scene))
+        except Refusal as refusal:
+            self.report({"ERROR"}, str(refusal))
+            return {"CANCELLED"}
+        settings = world.uwvdb
+        settings.kind = "COEFFICIENTS"
+        settings.absorption, settings.scattering, settings.hg_g = found.absorption, found.scattering, found.g
+        return {"FINISHED"}
+
+
 class UWVDB_OT_read_grids(bpy.types.Operator):
     """List the grids of this volume with the concentrations that make it well visible"""
     bl_idname, bl_label = "uwvdb.read_grids", "Read Grids"
@@ -350,8 +375,8 @@ class UWVDB_PT_domain(_VolumePanel, bpy.types.Panel):
 
 CLASSES = (UWVDB_PT_render, UWVDB_PT_motion_blur, UWVDB_PT_forward_scatter, UWVDB_PT_passes,
            UWVDB_PT_water, UWVDB_PT_water_surface, UWVDB_PT_snow, UWVDB_PT_lens, UWVDB_PT_housing,
-           UWVDB_PT_sensor, UWVDB_PT_light, UWVDB_OT_read_grids, UWVDB_OT_forget_grids,
-           UWVDB_PT_volume, UWVDB_PT_domain)
+           UWVDB_PT_sensor, UWVDB_PT_light, UWVDB_OT_water_from_volume, UWVDB_OT_read_grids,
+           UWVDB_OT_forget_grids, UWVDB_PT_volume, UWVDB_PT_domain)
 
 
 def register():

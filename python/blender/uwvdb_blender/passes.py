@@ -1,5 +1,7 @@
 """Which layers of uwvdb a view layer asks for, and how they become passes of Blender."""
 
+import json
+
 import numpy
 
 FAR = 1e10  # Cycles' depth of what is not hit
@@ -13,6 +15,7 @@ NUMBERS = {"use_range": "range", "use_path": "path", "use_lit": "lit"}
 MATTES = {"use_pass_cryptomatte_object": ("crypto_object", "CryptoObject"),
           "use_pass_cryptomatte_material": ("crypto_material", "CryptoMaterial")}
 MATTE_PASSES = 3  # of two ranks each
+HOLES = ("crypto_object", "transmittance")  # of which holes' alpha is made
 
 
 class Pass:
@@ -26,8 +29,8 @@ class Pass:
         return self._make(image)
 
 
-def layers_of(view_layer, scene):
-    """uwvdb's layers for the passes of a view layer."""
+def layers_of(view_layer, scene, held_out=()):
+    """uwvdb's layers for the passes of a view layer; `held_out` are the names of what is a hole in the picture."""
     settings = view_layer.uwvdb
     layers = ["total"] + [layer for key, layer in {**LIGHT, **NUMBERS}.items()
                           if getattr(settings, key) and _exists(layer, scene)]
@@ -41,7 +44,10 @@ def layers_of(view_layer, scene):
         layers.append("id")
     if view_layer.use_pass_material_index:
         layers.append("material")
-    layers += [layer for key, (layer, _) in MATTES.items() if getattr(view_layer, key)]
+    layers += [layer for key, (layer, _) in MATTES.items()
+               if getattr(view_layer, key) or held_out and layer == HOLES[0]]
+    if held_out and HOLES[1] not in layers:
+        layers.append(HOLES[1])
     if needs_flow(view_layer):
         layers += ["flow", "flow_back"]
     if settings.use_lamps:
@@ -70,7 +76,7 @@ def _exists(layer, scene):
 
 def passes_of(view_layer, scene, bands, lamp_names=(), written=None):
     """The passes in Blender's order. Without `written` only their names and channels are of use."""
-    yield Pass("Combined", "RGBA", "COLOR", lambda image: image.get("", "RGBA"))
+    yield Pass("Combined", "RGBA", "COLOR", lambda image: _with_holes(image, bands, written.held_out))
     unit = written.metres_per_unit if written else 1
     if view_layer.use_pass_z:
         yield Pass("Depth", "Z", "VALUE", lambda image: _far(_scaled(image.get("depth", "Z"), unit)))
@@ -109,6 +115,28 @@ def passes_of(view_layer, scene, bands, lamp_names=(), written=None):
         yield Pass("sensor", "X", "VALUE", lambda image: image.get("sensor", "V"))
 
 
+def _with_holes(image, bands, held_out):
+    """The picture; what is held out has the alpha of the water before it, which is what Cycles has there."""
+    result = image.get("", "RGBA")
+    if not held_out:
+        return result
+    field = next(name for name, text in image.texts.items()
+                 if name.startswith("cryptomatte/") and name.endswith("/name") and text == "CryptoObject")
+    hashes = json.loads(image.texts[field.removesuffix("name") + "manifest"])
+    ids = numpy.array([int(hashes[name], 16) for name in held_out if name in hashes], numpy.uint32)
+    coverage = numpy.zeros(result.shape[:2], numpy.float32)
+    for number in range(MATTE_PASSES):
+        ranks = image.get(f"CryptoObject{number:02}", "RGBA")
+        for at in (0, 2):
+            known = numpy.ascontiguousarray(ranks[..., at]).view(numpy.uint32)
+            coverage += numpy.where(numpy.isin(known, ids), ranks[..., at + 1], 0)
+    names = "RGB" if len(bands) == 3 else [_band_name(band) for band in bands]
+    clear = image.get("transmittance", names).mean(axis=-1)
+    result = result.copy()
+    result[..., 3] *= 1 - numpy.clip(coverage, 0, 1) * clear
+    return result
+
+
 def matte_texts(view_layer, image):
     """What Blender stores with the image, so that mattes are found by names: Cryptomatte's fields, under
     the name that a view layer's passes have in files."""
@@ -145,8 +173,12 @@ def _in_bands(layer, bands):
         yield Pass(layer, "RGB", "COLOR", lambda image: image.get(layer, "RGB"))
         return
     for band in bands:
-        name = f"{band:g}nm".replace(".", "_")
+        name = _band_name(band)
         yield Pass(f"{layer}.{name}", "X", "VALUE", lambda image, name=name: image.get(layer, [name]))
+
+
+def _band_name(band):
+    return f"{band:g}nm".replace(".", "_")
 
 
 def _scaled(values, metres_per_unit):

@@ -43,6 +43,10 @@ class UwvdbScene(bpy.types.PropertyGroup):
         name="Keep Scenes In", subtype="DIR_PATH",
         description="A folder in which the scene files of all frames rendered stay, for uwvdb's other "
                     "commands: FRAME_VIEWLAYER/scene.yaml")
+    bake_size: IntProperty(
+        name="Baked Textures", default=2048, min=0, max=8192, soft_min=64,
+        description="Greatest side in texels of the textures that Cycles bakes of materials whose nodes uwvdb does not "
+                    "have. They are kept until the material or the mesh changes. 0: nothing is baked")
     use_gloss: BoolProperty(
         name="Gloss and Metal", default=True,
         description="Principled's roughness, metal and specular under the lamps; otherwise all "

@@ -5,7 +5,7 @@ import json
 import os
 
 from . import bands as colours
-from . import cameras, features, lamps, meshes, motion, units, volumes, water
+from . import bakes, cameras, features, lamps, meshes, motion, units, volumes, water
 from .notes import Refusal
 from .words import Words
 
@@ -17,6 +17,7 @@ class Written:
 
     def __init__(self, path, bands, mesh_file, metres_per_unit, lamp_names, words):
         self.path, self.bands, self.words = path, bands, words
+        self.held_out = mesh_file.held_out
         self.pass_indices, self.material_indices = mesh_file.pass_indices, mesh_file.material_indices
         self.metres_per_unit, self.lamp_names = metres_per_unit, lamp_names
 
@@ -28,9 +29,9 @@ class View:
         self.camera, self.matrix, self.shift_x = camera, matrix, shift_x
 
 
-def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelled):
+def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelled, on_progress):
     """Writes the scene, and what belongs to it into the same folder. `moments` is a Motion with what
-    moves, or None."""
+    moves, or None; the other arguments are those of program.run()."""
     scene = depsgraph.scene
     folder, name = os.path.split(path)
     to_metres = units.to_metres(scene)
@@ -41,7 +42,9 @@ def write(depsgraph, path, program_path, view, size, moments, notes, is_cancelle
                               notes)
     _place_camera(camera, view, world_from_camera, moments)
     content["camera"] = camera
-    mesh_file = meshes.MeshFile(notes)
+    baked = bakes.Bakes(scene.uwvdb.bake_size, scene.uwvdb.threads, notes)
+    baked.make(depsgraph, bakes.sight(camera, view.matrix, size), is_cancelled, on_progress)
+    mesh_file = meshes.MeshFile(notes, bakes=baked)
     mesh_file.add_all(depsgraph, to_metres, moments)
     if not mesh_file.is_empty:
         glb_name = f"{os.path.splitext(name)[0]}-meshes.glb"

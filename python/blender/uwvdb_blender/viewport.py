@@ -8,7 +8,7 @@ import gpu
 from gpu_extras.presets import draw_texture_2d
 from mathutils import Matrix, Vector
 
-from . import cameras, features, meshes, preferences, program, scene as scenes, units, volumes
+from . import bakes, cameras, features, meshes, preferences, program, scene as scenes, units, volumes
 from .notes import Notes, Refusal
 from .session import Session
 from .words import Words
@@ -69,6 +69,8 @@ class Surroundings:
         self._keys = []                      # of the file's nodes, by which their places are known
         self._unfinished = None              # the meshes.MeshFile that is being read
         self._known = {}                     # what it read of objects that do not change
+        self._bake_error = ""
+        self._baking, self._failed = None, set()  # a bakes.InBackground, and digests of what could not be baked
         self._mesh_notes, self._notes, self._content = Notes(), Notes(), {}
         self.words = Words()
 
@@ -97,6 +99,43 @@ class Surroundings:
         content["render"] = self._render(depsgraph.scene)
         self._content = content
 
+    @property
+    def is_baking(self):
+        return self._baking is not None
+
+    def has_baked(self):
+        """Whether a bake has ended since: then the surfaces are to be looked at again."""
+        if self._baking is None or not self._baking.is_done:
+            return False
+        if self._baking.error:
+            self._failed |= self._baking.work.digests
+            self._bake_error = self._baking.error
+        self._baking, self._settings = None, None
+        return True
+
+    def close(self):
+        if self._baking is not None:
+            self._baking.cancel()
+
+    def _bakes(self, depsgraph):
+        """What is baked of the scene now; of the rest a bake begins."""
+        settings = depsgraph.scene.uwvdb
+        baked = bakes.Bakes(settings.bake_size, settings.threads, self._mesh_notes)
+        missing = [job for job in baked.look(depsgraph) if job.digest not in self._failed]
+        if self._bake_error:
+            self._mesh_notes.add(self._bake_error)
+        if missing and self._baking is None:
+            work = bakes.Work(missing)
+            try:
+                work.hand_over(depsgraph.scene, settings.threads)
+                self._baking = bakes.InBackground(work)
+            except bakes.FAILURES as error:
+                self._failed |= work.digests
+                self._mesh_notes.add(f"{work.names} could not be baked: {error}")
+                work.close()
+        baked.find()
+        return baked
+
     def with_camera(self, camera):
         geometry = {"geometry": self._entries} if self._entries else {}
         return {"uwvdb": 2, "camera": camera, **self._content, **geometry}
@@ -117,7 +156,8 @@ class Surroundings:
         scene = depsgraph.scene
         places = {meshes.key_of(instance): instance.matrix_world.copy().freeze()
                   for instance in meshes.surfaces(depsgraph)}
-        settings = (scene.uwvdb.use_gloss, units.metres_per_unit(scene), scene.uwvdb.bands)
+        settings = (scene.uwvdb.use_gloss, units.metres_per_unit(scene), scene.uwvdb.bands,
+                    scene.uwvdb.bake_size)
         are_others = (settings != self._settings or places.keys() != self._places.keys()
                       or any(map(depsgraph.id_type_updated, OF_SURFACES))
                       or any(isinstance(update.id, bpy.types.Object) and update.is_updated_geometry
@@ -127,7 +167,7 @@ class Surroundings:
                 self._known.pop(update.id.name_full, None)
         if are_others or self._unfinished is not None:
             self._mesh_notes = Notes()
-            self._unfinished = meshes.MeshFile(self._mesh_notes, self._known)
+            self._unfinished = meshes.MeshFile(self._mesh_notes, self._known, self._bakes(depsgraph))
             self.read_on(depsgraph)
         elif places != self._places and self._keys:
             to_metres = units.to_metres(scene)
@@ -170,6 +210,7 @@ class Viewport:
     def close(self):
         """Ends the process; returns at once."""
         self._session.close()
+        self._surroundings.close()
         if bpy.app.timers.is_registered(self._look):
             bpy.app.timers.unregister(self._look)
 
@@ -210,6 +251,7 @@ class Viewport:
             return
         step = "starting" if picture is None else STEPS[picture.quality]
         step = "reading meshes" if self._surroundings.is_reading else step
+        step = ", ".join([step] * bool(step) + ["baking materials"] * self._surroundings.is_baking)
         texts = [step] * bool(step) + notes.texts + self._surroundings.notes
         engine.update_stats("uwvdb", " | ".join(texts))
 
@@ -222,6 +264,8 @@ class Viewport:
         try:
             if self._was_asking and not program.is_asking():
                 self._was_asking = False
+                engine.tag_update()
+            if self._surroundings.has_baked():
                 engine.tag_update()
             if self._seen != self._session.version or self._surroundings.is_reading or self._is_new:
                 self._seen = self._session.version

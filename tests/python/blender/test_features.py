@@ -124,7 +124,7 @@ def layer():
 PROVOKED = {
     "not visible to cameras": lambda: on(thing(), visible_camera=False),
     "Indirect Only": lambda: in_collection(indirect_only=True),
-    "holdouts, of objects and of collections": lambda: in_collection(holdout=True),
+    "holdouts of volumes": lambda: on(thing("Plume"), is_holdout=True),
     "shadow catchers": lambda: on(thing(), is_shadow_catcher=True),
     "casts a shadow here, although": lambda: on(thing(), visible_shadow=False),
     "visible to all light": lambda: on(thing(), visible_glossy=False),

@@ -233,3 +233,64 @@ def test_ies_against_cycles():
                 photometry.ies = bpy.data.texts.load(path)
             links.new(photometry.outputs[0], emission.inputs["Strength"])
             against_cycles(f"IES, {mode.lower()}")
+
+
+def test_nodes_of_lights_against_cycles():
+    """Numbers and colours that a light's nodes compute."""
+    def tree(lamp):
+        lamp.data.use_nodes = True
+        nodes, links = lamp.data.node_tree.nodes, lamp.data.node_tree.links
+        return nodes, links, next(n for n in nodes if n.type == "EMISSION").inputs
+
+    def blackbody(nodes, links, inputs):
+        node = nodes.new("ShaderNodeBlackbody")
+        node.inputs[0].default_value = 3200
+        links.new(node.outputs[0], inputs["Color"])
+
+    def numbers(nodes, links, inputs):
+        value, node = nodes.new("ShaderNodeValue"), nodes.new("ShaderNodeMath")
+        value.outputs[0].default_value, node.operation = 1.5, "POWER"
+        links.new(value.outputs[0], node.inputs[0])
+        node.inputs[1].default_value = 2
+        links.new(node.outputs[0], inputs["Strength"])
+
+    def colours(nodes, links, inputs):
+        rgb, turned = nodes.new("ShaderNodeRGB"), nodes.new("ShaderNodeHueSaturation")
+        rgb.outputs[0].default_value, turned.inputs["Hue"].default_value = (0.8, 0.4, 0.1, 1), 0.6
+        links.new(rgb.outputs[0], turned.inputs["Color"])
+        links.new(turned.outputs[0], inputs["Color"])
+
+    def as_camera_sees(nodes, links, inputs):
+        path, mix = nodes.new("ShaderNodeLightPath"), nodes.new("ShaderNodeMath")
+        mix.operation = "ADD"
+        mix.inputs[1].default_value = 0.5
+        links.new(path.outputs["Is Singular Ray"], mix.inputs[0])
+        links.new(mix.outputs[0], inputs["Strength"])
+
+    # Cycles has a blackbody as polynomials, 1 % from Planck's law in the colour that matters least.
+    for make, tolerance in ((blackbody, 0.02), (numbers, 2e-3), (colours, 2e-3), (as_camera_sees, 2e-3)):
+        floor_scene(FEW_PIXELS)
+        lamp = light("POINT", watts=200, location=(-1.5, 0.7, 2.0), color=(0.9, 1, 0.8))
+        make(*tree(lamp))
+        ours = render()["Combined"]
+        assert not any("light 'Light'" in note for note in notes()), notes()
+        theirs = render("CYCLES")["Combined"]
+        for band in range(3):
+            wanted = theirs[..., band]
+            median_close(ours[..., band], wanted, tolerance, f"{make.__name__}, band {band}",
+                         wanted > 0.02 * wanted.max())
+
+
+def test_nodes_that_take_light_away():
+    """A light whose nodes compute a negative strength is refused as one whose Power is negative."""
+    floor_scene((24, 16))
+    lamp = light("POINT", "Bad", watts=200, location=(0.5, 0, 2))
+    light("POINT", "Good", watts=200, location=(-1.5, 0.7, 2.0))
+    lamp.data.use_nodes = True
+    nodes, links = lamp.data.node_tree.nodes, lamp.data.node_tree.links
+    node = nodes.new("ShaderNodeMath")
+    node.operation = "SUBTRACT"
+    node.inputs[0].default_value, node.inputs[1].default_value = 1, 3
+    links.new(node.outputs[0], next(n for n in nodes if n.type == "EMISSION").inputs["Strength"])
+    render()
+    assert any("light 'Bad': is left out" in note and "Strength is negative" in note for note in notes()), notes()

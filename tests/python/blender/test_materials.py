@@ -255,8 +255,9 @@ def test_negative_emission_is_named():
     assert any("'Dark Lamp': takes no light away" in note for note in notes()), notes()
 
 
-def test_unknown_nodes_are_named():
-    _, thing = facing_square()
+def test_unknown_nodes_are_named_where_nothing_is_baked():
+    scene, thing = facing_square()
+    scene.uwvdb.bake_size = 0
     made, nodes, links, node = principled()
     links.new(nodes.new("ShaderNodeTexNoise").outputs["Color"], node.inputs["Base Color"])
     links.new(nodes.new("ShaderNodeBump").outputs["Normal"], node.inputs["Normal"])

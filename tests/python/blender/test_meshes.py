@@ -153,7 +153,7 @@ def test_only_what_changed_is_read():
     scene.world.uwvdb.kind = "NONE"
     meshes, _ = modules()
     viewport = sys.modules["uwvdb_blender.viewport"]
-    read, kept = [], meshes._Corners._read_vertices
+    read, kept = [], meshes.Corners._read_vertices
     with tempfile.TemporaryDirectory() as folder:
         session = type("Session", (), {"folder": folder})
         surroundings = viewport.Surroundings(session, PROGRAM)
@@ -192,7 +192,7 @@ def test_only_what_changed_is_read():
         def slot():
             bpy.data.objects["(3,)"].data.materials.pop()
 
-        meshes._Corners._read_vertices = count
+        meshes.Corners._read_vertices = count
         bpy.app.handlers.depsgraph_update_post.append(look)
         try:
             changed("nothing", lambda: scene.camera.data.update_tag(), 5)
@@ -205,4 +205,4 @@ def test_only_what_changed_is_read():
             changed("a twin's name", lambda: setattr(bpy.data.objects["twin"], "name", "Twin"), 1)
         finally:
             bpy.app.handlers.depsgraph_update_post.remove(look)
-            meshes._Corners._read_vertices = kept
+            meshes.Corners._read_vertices = kept

@@ -248,3 +248,37 @@ def test_a_program_that_ends_is_started_again():
             assert time.monotonic() < end
             time.sleep(0.01)
         assert (shown.final() != before).any()
+
+
+def test_bakes_appear_when_they_are_there():
+    """Before that, the view shows what it has; then what F12 renders."""
+    kept = os.environ.get("XDG_CACHE_HOME")
+    os.environ["XDG_CACHE_HOME"] = tempfile.mkdtemp(prefix="uwvdb-test-")
+    try:
+        scene = pond()
+        made, nodes, links, node = material("Checked")
+        links.new(nodes.new("ShaderNodeTexChecker").outputs[0], node.inputs["Color"])
+        bpy.data.objects["Block"].data.materials.append(made)
+        view = View((0, -3, 0.4), window=scene.camera.calc_matrix_camera(
+            bpy.context.evaluated_depsgraph_get(), x=96, y=64))
+        with Shown() as shown:
+            shown.update()
+            assert shown.surroundings.is_baking
+            shown.ask(view, through_camera=True)
+            before = shown.final()
+            end = time.monotonic() + SECONDS_TO_WAIT
+            while not shown.surroundings.has_baked():
+                assert time.monotonic() < end
+                time.sleep(0.01)
+            assert not shown.surroundings.is_baking
+            shown.update()
+            assert not shown.surroundings.is_baking and not any("'Checked'" in note for note in shown.surroundings.notes)
+            shown.ask(view, through_camera=True)
+            after = shown.final()
+        wanted = render()["Combined"]
+        assert numpy.abs(before - after).max() > 0.1 * wanted.max()
+        close(after[..., :3], wanted[..., :3], 2e-3, "picture")
+    finally:
+        os.environ.pop("XDG_CACHE_HOME")
+        if kept is not None:
+            os.environ["XDG_CACHE_HOME"] = kept
