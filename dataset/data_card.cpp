@@ -238,10 +238,11 @@ std::string pinhole_lines(const Json& camera, const std::optional<PinholeFit>& f
         "camera without port, as this one is in air, is off by {}",
         fit->nearest, fit->farthest, fit->median, error_text(fit->in_air));
     if (fitted_in.empty())
-        return text + fmt::format(
-                          "; fitted, as `--pinhole-fit` does it for colmap, nerfstudio and euroc, "
-                          "it would be off by {}\n",
-                          error_text(fit->fitted));
+        return text +
+               fmt::format(
+                   "; fitted, as `--pinhole-fit` does it for colmap, nerfstudio, euroc and mcap, "
+                   "it would be off by {}\n",
+                   error_text(fit->fitted));
     const IntrinsicsDesc& i = fit->intrinsics;
     return text + fmt::format(
                       "; fitted, as {} has it, by {}: {}, fx {:.6g}, fy {:.6g}, cx {:.6g}, cy "

@@ -105,6 +105,7 @@ DatasetFormat nerfstudio_format();
 DatasetFormat tum_format();
 DatasetFormat euroc_format();
 DatasetFormat sensors_format();
+DatasetFormat mcap_format();
 DatasetFormat calibration_format();
 
 /// Every format, in the order in which --help lists them.

@@ -304,7 +304,8 @@ void merge(const DatasetArguments& a) {
 void check_pinhole_fit(const DatasetDefinition& definition, const SceneDesc& scene) {
     if (fittable_formats(definition).empty())
         throw UsageError(
-            "--pinhole-fit: is for the cameras of colmap, nerfstudio and euroc; add one of them "
+            "--pinhole-fit: is for the cameras of colmap, nerfstudio, euroc and mcap; add one of "
+            "them "
             "to --format");
     if (!has_port(scene))
         throw UsageError("--pinhole-fit: no camera of the scene has a port; leave it out");

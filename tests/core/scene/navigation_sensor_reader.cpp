@@ -189,7 +189,7 @@ TEST_F(NavigationSensorReader, FaultsAreNamedWithTheirMend) {
     folder_.write("model.yaml", std::string(k_kalibr_imu) + "model: scale-misalignment\n");
     check(k_begin,
           {{"sensors: [{type: gyro}]", "sensors[0].type"},
-           {"sensors: [{type: imu, acceleration_noise: 1}]", "did you mean"},
+           {"sensors: [{type: imu, accelerometer_noise_densty: 1}]", "did you mean"},
            {"sensors: [{type: imu, position: [0, 0, 0]}]", "is not used by type 'imu'"},
            {"sensors: [{position: [0, 0, 0], update_rate: 3}]", "unknown key"},
            {"sensors: [{type: imu, frame: rig}]", "there is no rig in this scene"},
