@@ -135,6 +135,16 @@ std::string calibration_obstacle(CalibrationFormat format, const CameraDesc& cam
 /// precision. Precondition: there is no calibration_obstacle.
 std::string write_calibration(CalibrationFormat format, const CameraDesc& camera);
 
+/// A camera of a Kalibr chain with an IMU.
+struct ChainedCamera {
+    CameraDesc desc;         // as for CalibrationFormat::kalibr
+    Affine camera_from_imu;  // rigid
+};
+
+/// Kalibr's camchain-imucam.yaml: the cameras as cam0, cam1, ... with T_cam_imu and T_cn_cnm1, on
+/// one clock. Precondition: no camera has a calibration_obstacle for Kalibr.
+std::string write_kalibr_chain(std::span<const ChainedCamera> cameras);
+
 /// One line for each property of this camera that a file of `format` leaves out.
 std::vector<std::string> calibration_omissions(CalibrationFormat format, const CameraDesc& camera);
 

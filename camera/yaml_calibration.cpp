@@ -385,7 +385,10 @@ std::string kalibr_obstacle(const CameraDesc& camera) {
     return "";
 }
 
-std::string write_kalibr(const CameraDesc& camera) {
+namespace {
+
+/// A camera of a chain; `poses` are its lines of poses.
+std::string kalibr_camera(const CameraDesc& camera, std::size_t number, const std::string& poses) {
     const DistortionDesc& d = camera.distortion;
     const bool fisheye = d.model == DistortionDesc::Model::fisheye;
     const std::array<double, 4> coefficients =
@@ -394,10 +397,39 @@ std::string write_kalibr(const CameraDesc& camera) {
     const IntrinsicsDesc& i = camera.intrinsics;
     const std::array<double, 4> intrinsics{i.fx, i.fy, i.cx - k_half_pixel, i.cy - k_half_pixel};
     return fmt::format(
-        "cam0:\n  camera_model: pinhole\n  intrinsics: {}\n  distortion_model: {}\n"
-        "  distortion_coeffs: {}\n  resolution: [{}, {}]\n  rostopic: /cam0/image_raw\n",
-        number_list(intrinsics), fisheye ? "equidistant" : "radtan", number_list(coefficients),
-        camera.width, camera.height);
+        "cam{0}:\n{1}  camera_model: pinhole\n  intrinsics: {2}\n  distortion_model: {3}\n"
+        "  distortion_coeffs: {4}\n  resolution: [{5}, {6}]\n  rostopic: /cam{0}/image_raw\n",
+        number, poses, number_list(intrinsics), fisheye ? "equidistant" : "radtan",
+        number_list(coefficients), camera.width, camera.height);
+}
+
+/// The rows of a rigid map as Kalibr has them.
+std::string kalibr_pose(const char* name, const Affine& map) {
+    std::string text = fmt::format("  {}:\n", name);
+    for (int row = 0; row < 3; ++row)
+        // + 0.0 makes 0 of -0.
+        text += fmt::format("  - [{}, {}, {}, {}]\n", map.linear()[0][row] + 0.0,
+                            map.linear()[1][row] + 0.0, map.linear()[2][row] + 0.0,
+                            map.offset()[row] + 0.0);
+    return text + "  - [0.0, 0.0, 0.0, 1.0]\n";
+}
+
+}  // namespace
+
+std::string write_kalibr(const CameraDesc& camera) {
+    return kalibr_camera(camera, 0, "");
+}
+
+std::string write_kalibr_chain(std::span<const ChainedCamera> cameras) {
+    std::string text;
+    for (std::size_t i = 0; i < cameras.size(); ++i) {
+        const Affine& own = cameras[i].camera_from_imu;
+        std::string poses = kalibr_pose("T_cam_imu", own);
+        if (i > 0)
+            poses += kalibr_pose("T_cn_cnm1", own * cameras[i - 1].camera_from_imu.inverse());
+        text += kalibr_camera(cameras[i].desc, i, poses + "  timeshift_cam_imu: 0.0\n");
+    }
+    return text;
 }
 
 // The camera section of a scene file, ready to paste.

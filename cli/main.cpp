@@ -12,6 +12,7 @@
 #include "cli/tools/edit_command.h"
 #include "cli/tools/measure_command.h"
 #include "cli/tools/points_commands.h"
+#include "cli/tools/record_command.h"
 #include "cli/tools/water_command.h"
 #include "cli/validate/validate_command.h"
 
@@ -23,6 +24,7 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::dataset_command());
     commands.push_back(uw::info_command());
     commands.push_back(uw::water_command());
+    commands.push_back(uw::record_command());
     commands.push_back(uw::measure_command());
     commands.push_back(uw::fit_command());
     commands.push_back(uw::sweep_command());

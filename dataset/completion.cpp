@@ -25,6 +25,7 @@
 #include "core/scene/trajectory.h"
 #include "dataset/data_card.h"
 #include "dataset/formats.h"
+#include "dataset/sensor_files.h"
 #include "dataset/view.h"
 
 namespace uw {
@@ -260,7 +261,7 @@ class Completion {
     }
 
     void complete_draw(std::size_t draw) {
-        CompleteSequence sequence{definition_, draw, definition_.folder(draw), {}, {}};
+        CompleteSequence sequence{definition_, draw, definition_.folder(draw), {}, {}, {}};
         const std::size_t count = definition_.frames.size() * definition_.cameras.size();
         std::vector<std::size_t> missing;
         for (std::size_t i = draw * count; i < (draw + 1) * count; ++i) {
@@ -283,7 +284,7 @@ class Completion {
                               static_cast<double>(definition_.draws.size() + 1));
     }
 
-    /// Lists the files that the views of a draw share, and reads the fits among them.
+    /// Lists the files that the views of a draw share, and reads those of which tables are made.
     void take_shared(CompleteSequence& sequence) {
         const std::vector<SetFile>& shared = sequence.records.front().shared;
         std::vector<std::size_t> others;
@@ -294,6 +295,9 @@ class Completion {
             files_.take(file);
             if (file.path == pinhole_file(definition_, sequence.draw))
                 sequence.fits = read_pinholes(folder_ / file.path, definition_.cameras.size());
+            if (file.path == imu_mounts_file(definition_, sequence.draw))
+                sequence.imu_from_cameras =
+                    read_imu_mounts(folder_ / file.path, definition_.cameras.size());
         }
     }
 

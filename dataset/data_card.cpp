@@ -172,6 +172,42 @@ std::string light_note(const DatasetFile& set) {
     return left_out_text(left_out);
 }
 
+namespace {
+
+Json sensors_json(const SceneDesc& first) {
+    Json list = Json::array();
+    for (const NavigationSensorDesc& sensor : first.navigation)
+        list.push_back({{"name", sensor.name},
+                        {"type", type_word(sensor)},
+                        {"update_rate", sensor.update_rate}});
+    return list;
+}
+
+/// The section on the vehicle's sensors; empty without any. `facts` are those of a set that an
+/// earlier program may have begun.
+std::string sensor_section(const DatasetDefinition& definition, const Json& facts) {
+    if (!facts.contains("sensors") || facts.at("sensors").empty()) return {};
+    std::string text = "\n## Sensors\n\n";
+    bool all_are_imus = true;
+    for (const Json& sensor : facts.at("sensors")) {
+        const std::string type = sensor.at("type").get<std::string>();
+        all_are_imus = all_are_imus && type == "imu";
+        text += fmt::format("- `{}`: {}, {:g} readings a second\n",
+                            sensor.at("name").get<std::string>(), type,
+                            sensor.at("update_rate").get<double>());
+    }
+    if (definition.has_format("sensors")) return text;
+    if (!definition.has_format("euroc"))
+        return text + "\nTheir readings are not in this set, but in one with `--format sensors`.\n";
+    return text + (all_are_imus
+                       ? "\n`mav0/` has the readings, and not the truth of each, which a "
+                         "set with `--format sensors` has.\n"
+                       : "\n`mav0/` has those of IMUs alone; a set with `--format sensors` "
+                         "has all, and the truth.\n");
+}
+
+}  // namespace
+
 Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out) {
     Json geometry = Json::array();
     for (const GeometryDesc& entry : first.geometry)
@@ -180,6 +216,7 @@ Json facts_of(const SceneDesc& first, std::span<const LightLeftOut> left_out) {
     return {{"cameras", cameras_json(first)},
             {"water", water_json(first)},
             {"lamps", lamps_json(first)},
+            {"sensors", sensors_json(first)},
             {"geometry", std::move(geometry)},
             {"frames_per_second", first.render.fps},
             {"integrator", word_of(first.render.integrator, k_integrator_names)},
@@ -201,10 +238,11 @@ std::string pinhole_lines(const Json& camera, const std::optional<PinholeFit>& f
         "camera without port, as this one is in air, is off by {}",
         fit->nearest, fit->farthest, fit->median, error_text(fit->in_air));
     if (fitted_in.empty())
-        return text + fmt::format(
-                          "; fitted, as `--pinhole-fit` does it for colmap, nerfstudio and euroc, "
-                          "it would be off by {}\n",
-                          error_text(fit->fitted));
+        return text +
+               fmt::format(
+                   "; fitted, as `--pinhole-fit` does it for colmap, nerfstudio, euroc and mcap, "
+                   "it would be off by {}\n",
+                   error_text(fit->fitted));
     const IntrinsicsDesc& i = fit->intrinsics;
     return text + fmt::format(
                       "; fitted, as {} has it, by {}: {}, fx {:.6g}, fy {:.6g}, cx {:.6g}, cy "
@@ -261,9 +299,8 @@ std::string data_card(const DatasetFile& set, const PinholeFits& fits, std::uint
         "file that the poses come from, or else of the scene's time.\n\n## Water\n\n" +
         water_lines(set.facts.at("water"));
     text += "\n## Lamps\n\n" + lamp_lines(set.facts.at("lamps"));
-    text +=
-        "\nPositions [m] and directions are in the axes of what a lamp is fixed to.\n\n## "
-        "Files\n\n";
+    text += "\nPositions [m] and directions are in the axes of what a lamp is fixed to.\n" +
+            sensor_section(d, set.facts) + "\n## Files\n\n";
     for (const std::string& name : d.formats)
         text += fmt::format("- {}\n", dataset_format(name).card);
     text +=

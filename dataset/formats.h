@@ -12,6 +12,7 @@
 #include "core/scene/trajectory.h"
 #include "dataset/definition.h"
 #include "dataset/pinhole_fit.h"
+#include "dataset/sensor_files.h"
 #include "dataset/set_files.h"
 #include "dataset/view.h"
 
@@ -25,6 +26,9 @@ struct CompleteSequence {
     std::vector<ViewRecord> records;
     /// The fit to each camera with a port (fit_pinholes); none if no format asks for it.
     PinholeFits fits;
+    /// The set's cameras in the axes of the first IMU (imu_mounts_file); none if no format asks for
+    /// them or the scene has no IMU.
+    std::vector<Affine> imu_from_cameras;
 
     /// A camera of the set without its port, for formats that cannot describe ports.
     CameraDesc portless(std::size_t camera) const {
@@ -74,6 +78,10 @@ struct DatasetFormat {
     /// Throws UsageError of one line for a set that it cannot express. `scene` is that of the first
     /// view, with its rig. May be null.
     void (*check)(const DatasetDefinition& definition, const SceneDesc& scene) = nullptr;
+    /// Returns the files of a draw that follow from its scene alone, as it was read, by their names
+    /// relative to the set's folder. They are written before the views. May be null.
+    std::vector<NamedText> (*share)(const DatasetDefinition& definition, std::size_t draw,
+                                    const SceneDesc& scene) = nullptr;
     /// Writes the files of one view; called from several threads for different views. May be null.
     void (*write_view)(const ViewImages& images, SetFiles& files) = nullptr;
     /// Writes the files that need all views of a draw. May be null.
@@ -96,6 +104,8 @@ DatasetFormat colmap_format();
 DatasetFormat nerfstudio_format();
 DatasetFormat tum_format();
 DatasetFormat euroc_format();
+DatasetFormat sensors_format();
+DatasetFormat mcap_format();
 DatasetFormat calibration_format();
 
 /// Every format, in the order in which --help lists them.

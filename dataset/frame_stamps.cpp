@@ -31,4 +31,13 @@ std::string seconds_text(std::int64_t stamp) {
                        std::abs(stamp % k_second));
 }
 
+std::int64_t euroc_stamp(std::int64_t stamp) {
+    // Readers cut the names of images into seconds and nine digits of nanoseconds, and sort them as
+    // text. So all have 19 digits, as the benchmark's, whose clock began in 1970, have; those of
+    // other clocks are counted from May 2014.
+    constexpr std::int64_t k_min_of_19_digits = 1'000'000'000'000'000'000;
+    constexpr std::int64_t k_start_of_others = 1'400'000'000'000'000'000;
+    return stamp >= k_min_of_19_digits ? stamp : k_start_of_others + stamp;
+}
+
 }  // namespace uw

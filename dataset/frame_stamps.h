@@ -29,4 +29,7 @@ class FrameStamps {
 /// A stamp in seconds, to the last digit: "1403636579.763555584".
 std::string seconds_text(std::int64_t stamp);
 
+/// A stamp as EuRoC has it, with 19 digits: below 10^18 ns, 1 400 000 000 s are added.
+std::int64_t euroc_stamp(std::int64_t stamp);
+
 }  // namespace uw

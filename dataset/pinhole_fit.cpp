@@ -393,7 +393,7 @@ std::string in_air_message(const std::string& formats, const std::string& fittab
                            const PinholeFits& fits) {
     const PinholeFit* most = max_off(fits);
     if (formats.empty() || most == nullptr) return {};
-    const std::string whose = fittable.empty()      ? "those of colmap, nerfstudio and euroc"
+    const std::string whose = fittable.empty()      ? "those of colmap, nerfstudio, euroc and mcap"
                               : fittable == formats ? "them"
                                                     : "those of " + fittable;
     return fmt::format(

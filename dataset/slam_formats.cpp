@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "camera/calibration.h"
 #include "core/base/error.h"
 #include "dataset/formats.h"
 #include "dataset/frame_stamps.h"
+#include "dataset/sensor_files.h"
 #include "render/image_scene.h"
 
 namespace uw {
@@ -75,18 +77,9 @@ DatasetFormat tum_format() {
 
 namespace {
 
-// Readers cut the names of images into seconds and nine digits of nanoseconds, and sort them as
-// text. So all have 19 digits, as the benchmark's, whose clock began in 1970, have; those of other
-// clocks are counted from May 2014 [ns].
-constexpr std::int64_t k_min_of_19_digits = 1'000'000'000'000'000'000;
-constexpr std::int64_t k_start_of_others = 1'400'000'000'000'000'000;
-
+/// Whether EuRoC has a stamp as it is.
 bool has_19_digits(std::int64_t stamp) {
-    return stamp >= k_min_of_19_digits;
-}
-
-std::int64_t euroc_stamp(std::int64_t stamp) {
-    return has_19_digits(stamp) ? stamp : k_start_of_others + stamp;
+    return euroc_stamp(stamp) == stamp;
 }
 
 std::string cam_folder(const DatasetDefinition& definition, std::size_t draw, std::size_t camera) {
@@ -123,26 +116,18 @@ void check_euroc(const DatasetDefinition& definition, const SceneDesc& scene) {
     for (const RigCameraDesc& entry : scene.cameras) check(entry.camera);
 }
 
-std::string matrix_yaml(const Affine& map) {
-    std::string text = "T_BS:\n  cols: 4\n  rows: 4\n  data: [";
-    for (int row = 0; row < 3; ++row)
-        text += fmt::format("{}, {}, {}, {},\n         ", map.linear()[0][row],
-                            map.linear()[1][row], map.linear()[2][row], map.offset()[row]);
-    return text + "0.0, 0.0, 0.0, 1.0]\n";
-}
-
-/// `note` is a comment on the intrinsics, or empty.
-std::string camera_yaml(const CameraDesc& camera, const char* note, const Affine& body_from_camera,
-                        double rate) {
+/// `body` and `note` are comments, on what the body is and on the intrinsics; `note` may be empty.
+std::string camera_yaml(const CameraDesc& camera, const char* body, const char* note,
+                        const Affine& body_from_camera, double rate) {
     const IntrinsicsDesc& k = camera.intrinsics;
     const DistortionDesc& d = camera.distortion;
     const bool is_fisheye = d.model == DistortionDesc::Model::fisheye;
     const std::array<double, 4> coefficients = is_fisheye
                                                    ? std::array{d.k[0], d.k[1], d.k[2], d.k[3]}
                                                    : std::array{d.k[0], d.k[1], d.p[0], d.p[1]};
-    std::string text = "# The body is the first camera.\n";
+    std::string text = body;
     text += note;
-    text += "sensor_type: camera\ncomment: rendered\n" + matrix_yaml(body_from_camera);
+    text += "sensor_type: camera\ncomment: rendered\n" + euroc_pose_yaml(body_from_camera);
     text += fmt::format(
         "rate_hz: {:.9g}\nresolution: [{}, {}]\ncamera_model: pinhole\n"
         "intrinsics: [{}, {}, {}, {}] #fu, fv, cu, cv\ndistortion_model: {}\n"
@@ -163,11 +148,7 @@ Vector3 velocity_at(const CompleteSequence& sequence, std::size_t frame) {
 }
 
 std::string truth_csv(const CompleteSequence& sequence) {
-    std::string text =
-        "#timestamp, p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], "
-        "q_RS_z [], v_RS_R_x [m s^-1], v_RS_R_y [m s^-1], v_RS_R_z [m s^-1], b_w_RS_S_x [rad s^-1],"
-        " b_w_RS_S_y [rad s^-1], b_w_RS_S_z [rad s^-1], b_a_RS_S_x [m s^-2], b_a_RS_S_y [m s^-2], "
-        "b_a_RS_S_z [m s^-2]\n";
+    std::string text = k_euroc_truth_header;
     for (std::size_t frame = 0; frame < sequence.definition.frames.size(); ++frame) {
         const ViewRecord& record = sequence.at(frame, 0);
         const auto [p, q] = camera_pose(record.camera);
@@ -191,7 +172,14 @@ void write_euroc_tables(const CompleteSequence& sequence, SetFiles& files) {
     const std::size_t frames = definition.frames.size();
     const double seconds = sequence.at(frames - 1, 0).time - sequence.at(0, 0).time;
     const double rate = seconds > 0 ? static_cast<double>(frames - 1) / seconds : 0;
-    const Affine body_from_world = sequence.at(0, 0).camera.world_from_camera.inverse();
+    const bool has_imu = !sequence.imu_from_cameras.empty();
+    const Affine first_from_world = sequence.at(0, 0).camera.world_from_camera.inverse();
+    const auto body_from_camera = [&](std::size_t camera) {
+        if (has_imu) return sequence.imu_from_cameras[camera];
+        const CameraDesc& desc = sequence.at(0, camera).camera;
+        return camera == 0 ? Affine() : first_from_world * desc.world_from_camera;
+    };
+    std::vector<ChainedCamera> chain;
     for (std::size_t camera = 0; camera < definition.cameras.size(); ++camera) {
         std::string table = "#timestamp [ns],filename\n";
         for (std::size_t frame = 0; frame < frames; ++frame) {
@@ -200,8 +188,6 @@ void write_euroc_tables(const CompleteSequence& sequence, SetFiles& files) {
         }
         const std::string folder = cam_folder(definition, sequence.draw, camera);
         const CameraDesc& desc = sequence.at(0, camera).camera;
-        const Affine body_from_camera =
-            camera == 0 ? Affine() : body_from_world * desc.world_from_camera;
         files.add_bytes("euroc", folder + "data.csv", table);
         const char* const note =
             !desc.port ? ""
@@ -209,34 +195,95 @@ void write_euroc_tables(const CompleteSequence& sequence, SetFiles& files) {
                 ? "# Behind a port, which this format has no words for: fitted to the rays in "
                   "water.\n"
                 : "# Behind a port, which this format has no words for: as it is in air.\n";
-        files.add_bytes("euroc", folder + "sensor.yaml",
-                        camera_yaml(sequence.portless(camera), note, body_from_camera, rate));
+        const char* const body =
+            has_imu ? "# The body is imu0.\n" : "# The body is the first camera.\n";
+        files.add_bytes(
+            "euroc", folder + "sensor.yaml",
+            camera_yaml(sequence.portless(camera), body, note, body_from_camera(camera), rate));
+        chain.push_back({sequence.portless(camera), body_from_camera(camera).inverse()});
+    }
+    if (has_imu) {
+        // The rest of what an IMU needs is there already (share_euroc_imu).
+        files.add_bytes("euroc", sequence.folder + "mav0/camchain-imucam.yaml",
+                        write_kalibr_chain(chain));
+        return;
     }
     const std::string folder = sequence.folder + "mav0/state_groundtruth_estimate0/";
     files.add_bytes("euroc", folder + "data.csv", truth_csv(sequence));
     files.add_bytes("euroc", folder + "sensor.yaml",
                     "sensor_type: visual-inertial\ncomment: the poses rendered, without "
                     "error\n" +
-                        matrix_yaml(Affine()));
+                        euroc_pose_yaml(Affine()));
+}
+
+std::vector<NamedText> share_euroc_imu(const DatasetDefinition& definition, std::size_t draw,
+                                       const SceneDesc& scene) {
+    if (!has_imu(scene)) return {};
+    std::vector<NamedText> files;
+    for (NamedText& file : euroc_imu_files(scene, span_of_frames(definition, scene)))
+        files.push_back({definition.folder(draw) + "mav0/" + file.name, std::move(file.text)});
+    files.push_back({imu_mounts_file(definition, draw), imu_mounts_text(definition, scene)});
+    return files;
 }
 
 }  // namespace
 
 DatasetFormat euroc_format() {
     return {.name = "euroc",
-            .summary = "mav0/: EuRoC (ASL): cam0, cam1, ..., state_groundtruth_estimate0",
+            .summary = "mav0/: EuRoC (ASL): cam0, ..., imu0, state_groundtruth_estimate0",
             .card =
                 "`mav0/`: the layout of EuRoC and other ASL data sets: `cam0/data` and so on, "
                 "named by time in nanoseconds of 19 digits (clocks of fewer have 1 400 000 000 s "
                 "added), "
                 "`sensor.yaml` with intrinsics (first pixel's centre at (0, 0)) and `T_BS`, and "
-                "`state_groundtruth_estimate0`. The body is the first camera. Velocities are "
-                "differences of the positions in the frames around; there is no IMU, and biases "
-                "are 0. Behind a port intrinsics are those in air, or fitted (above).",
+                "`state_groundtruth_estimate0`. With an IMU the body is the first of them: `imu0` "
+                "has its readings, the ground truth poses, velocities and biases at their times, "
+                "and `camchain-imucam.yaml` the cameras for Kalibr, with `T_cam_imu`; scale, "
+                "misalignment and range of an IMU, and other sensors, have no place here. Without "
+                "an IMU the body is the first camera, velocities are differences of the positions "
+                "in the frames around, and biases are 0. Behind a port intrinsics are those in "
+                "air, or fitted (above).",
             .ports = DatasetFormat::Ports::fitted,
             .check = check_euroc,
+            .share = share_euroc_imu,
             .write_view = write_euroc_image,
             .complete = write_euroc_tables};
+}
+
+namespace {
+
+void check_sensors(const DatasetDefinition& definition, const SceneDesc& scene) {
+    if (scene.navigation.empty())
+        throw UsageError(
+            "--format sensors: the scene has no sensors of a vehicle; add sensors: [{type: imu}] "
+            "to it, or leave the format out");
+    if (definition.formats.size() == 1)
+        throw UsageError(
+            "--format sensors: has no images; add png or another format, or use uwvdb record, "
+            "which renders nothing");
+}
+
+std::vector<NamedText> share_sensors(const DatasetDefinition& definition, std::size_t draw,
+                                     const SceneDesc& scene) {
+    std::vector<NamedText> files = sensor_files(scene, span_of_frames(definition, scene));
+    for (NamedText& file : files) file.name = definition.folder(draw) + "sensors/" + file.name;
+    return files;
+}
+
+}  // namespace
+
+DatasetFormat sensors_format() {
+    return {.name = "sensors",
+            .summary = "sensors/: IMU, pressure, DVL, ... as CSV, with the truth",
+            .card =
+                "`sensors/`: `NAME.csv` of each sensor of the vehicle, its readings and beside "
+                "them the truth (`_true`), with `stamp_ns`, the same clock as the images'; empty: "
+                "no reading. The first line has the units. `NAME.yaml`: an IMU as Kalibr has it. "
+                "`trajectory.tum` and `trajectory.csv`: the body (rig or camera) in the world, "
+                "the latter with velocities in EuRoC's columns. `sensors.json`: where sensors and "
+                "cameras are in the body's axes.",
+            .check = check_sensors,
+            .share = share_sensors};
 }
 
 }  // namespace uw

@@ -118,9 +118,10 @@ void add_output_options(Options& options, DatasetArguments& a) {
                    "scale of 16-bit depth: N per metre; default 1000");
     options.number("--depth-far", "D", a.depth_far, 0, 1e9,
                    "leave out of 16-bit depth what is farther than D metres");
-    options.flag("--pinhole-fit", a.pinhole_fit,
-                 "fit the cameras of colmap, nerfstudio and euroc, which know no port, to what is "
-                 "seen through it, instead of giving them as they are in air");
+    options.flag(
+        "--pinhole-fit", a.pinhole_fit,
+        "fit the cameras of colmap, nerfstudio, euroc and mcap, which know no port, to what is "
+        "seen through it, instead of giving them as they are in air");
     options.text("--licence", "TEXT", a.licence, "licence of the set, for its data card");
 }
 

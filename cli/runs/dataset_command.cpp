@@ -193,7 +193,7 @@ class ViewRenderer : public ViewClient {
     }
 
   private:
-    /// Finds the data common to a draw's views, its surface points and pinholes, and writes them
+    /// Finds the data common to a draw's views (surface points, sensors, pinholes), and writes them
     /// unless another process has. Existing files may be of other meshes.
     void load_draw(std::size_t draw) {
         if (draw_ == draw) return;
@@ -208,6 +208,10 @@ class ViewRenderer : public ViewClient {
                   points_csv(point_seeds(definition, draw, scene, surfaces_of(draw))));
             points_ = std::make_shared<const std::vector<Landmark>>(read_points(folder_ / name));
         }
+        for (const std::string& format : definition.formats)
+            if (const auto files = dataset_format(format).share)
+                for (const NamedText& file : files(definition, draw, scene))
+                    share("sensors", file.name, file.text);
         const bool knows_ports =
             fittable_formats(definition).empty() && formats_in_air(definition).empty();
         if (knows_ports || !has_port(scene)) return;
@@ -300,7 +304,8 @@ void merge(const DatasetArguments& a) {
 void check_pinhole_fit(const DatasetDefinition& definition, const SceneDesc& scene) {
     if (fittable_formats(definition).empty())
         throw UsageError(
-            "--pinhole-fit: is for the cameras of colmap, nerfstudio and euroc; add one of them "
+            "--pinhole-fit: is for the cameras of colmap, nerfstudio, euroc and mcap; add one of "
+            "them "
             "to --format");
     if (!has_port(scene))
         throw UsageError("--pinhole-fit: no camera of the scene has a port; leave it out");

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace uw {
 
 namespace {
@@ -18,9 +16,12 @@ Point3 read_point(const ConfigValue& value) {
     return at_origin_plus(value.vector("give a point in the world, three lengths in metres"));
 }
 
+}  // namespace
+
 MeterDesc read_meter(const ConfigValue& value, std::size_t number, const SceneContext& context) {
-    ConfigMap map(value, {"name", "position", "from", "to", "count", "up"}, k_example);
+    ConfigMap map(value, {"type", "name", "position", "from", "to", "count", "up"}, k_example);
     MeterDesc meter;
+    map.find("type");  // which is light
     meter.where = value.location();
     meter.name = fmt::format("sensor{}", number);
     if (const auto name = map.find("name"))
@@ -41,20 +42,6 @@ MeterDesc read_meter(const ConfigValue& value, std::size_t number, const SceneCo
     for (int i = 0; i < count; ++i)
         meter.points.push_back(from + static_cast<double>(i) / (count - 1) * (to - from));
     return meter;
-}
-
-}  // namespace
-
-std::vector<MeterDesc> read_meters(const ConfigValue& value, const SceneContext& context) {
-    std::vector<MeterDesc> meters;
-    for (const ConfigValue& entry : value.list("write one '- name: ...' per sensor")) {
-        MeterDesc meter = read_meter(entry, meters.size() + 1, context);
-        if (std::ranges::find(meters, meter.name, &MeterDesc::name) != meters.end())
-            entry.fail(fmt::format("the name '{}' is taken by another sensor; give each its own",
-                                   meter.name));
-        meters.push_back(std::move(meter));
-    }
-    return meters;
 }
 
 }  // namespace uw

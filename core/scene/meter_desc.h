@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,8 @@ struct MeterDesc {
     SourceLocation where;
 };
 
-/// `sensors`. Without `up` that is out of the water, where the scene has a surface, else y.
-std::vector<MeterDesc> read_meters(const ConfigValue& value, const SceneContext& context);
+/// An entry of `sensors` that is a light meter, the `number`th sensor. Without `up` that is out of
+/// the water, where the scene has a surface, else y.
+MeterDesc read_meter(const ConfigValue& value, std::size_t number, const SceneContext& context);
 
 }  // namespace uw

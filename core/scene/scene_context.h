@@ -78,6 +78,7 @@ inline constexpr std::array k_file_keys = std::to_array<FileKey>({
     {"lamps[*].profile.file", "a lamp profile of the scene"},
     {"lamps[*].spectrum.file", "a lamp spectrum of the scene"},
     {"lamps[*].trajectory.file", "a trajectory of the scene", true},
+    {"sensors[*].file", "a sensor of the scene"},
     {"sky.file", "the sky of the scene"},
     {"sky.spectrum.file", "the sky of the scene"},
     {"render.response", "the response of the scene"},

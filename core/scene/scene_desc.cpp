@@ -293,7 +293,8 @@ SceneDesc scene_of_tree(const ConfigNode& root, const std::filesystem::path& fil
     if (const auto entry = map.find("volumes")) desc.volumes = read_volumes(*entry, context);
     if (const auto entry = map.find("geometry")) desc.geometry = read_geometry(*entry, context);
     if (const auto entry = map.find("lamps")) desc.lamps = read_lamps(*entry, context);
-    if (const auto entry = map.find("sensors")) desc.meters = read_meters(*entry, context);
+    if (const auto entry = map.find("sensors"))
+        read_sensors(*entry, context, desc.meters, desc.navigation);
     append_emissions(desc.volumes, desc.lamps);
     if (const auto entry = map.find("sky")) append_sky(*entry, context, desc.lamps);
     if (const auto entry = map.find("render")) desc.render = read_render(*entry, context);

@@ -11,6 +11,7 @@
 #include "core/scene/geometry_desc.h"
 #include "core/scene/lamp_desc.h"
 #include "core/scene/meter_desc.h"
+#include "core/scene/navigation_sensor_desc.h"
 #include "core/scene/render_desc.h"
 #include "core/scene/scene_context.h"
 #include "core/scene/trajectory.h"
@@ -46,7 +47,8 @@ struct SceneDesc {
     std::vector<VolumeDesc> volumes;
     std::vector<GeometryDesc> geometry;
     std::vector<LampDesc> lamps;
-    std::vector<MeterDesc> meters;  ///< `sensors`
+    std::vector<MeterDesc> meters;                 ///< of `sensors`
+    std::vector<NavigationSensorDesc> navigation;  ///< the others of `sensors`
     RenderDesc render;
     std::vector<NamedFile> files;       ///< that its keys name, with the patterns of sequences
     std::string hash;                   ///< of the text as read with overrides, for image headers

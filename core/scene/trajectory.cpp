@@ -97,6 +97,28 @@ Vector3 PositionSpline::velocity(const std::vector<double>& knots, double u) con
     return (points_[span.first + 1] - points_[span.first]) / span.width + span.width / 6 * bent;
 }
 
+Vector3 PositionSpline::acceleration(const std::vector<double>& knots, double u) const {
+    const KnotSpan span = span_of(knots, u);
+    return (1 - span.fraction) * bends_[span.first] + span.fraction * bends_[span.first + 1];
+}
+
+BodyMotion motion_of_part(const BodyMotion& body, const Affine& body_from_part) {
+    const Matrix3 world_from_body = body.pose.rotation.matrix();
+    const Vector3& arm = body_from_part.offset();
+    const Vector3 round = glm::cross(body.angular_velocity, arm);
+    const Matrix3 part_from_body = glm::transpose(body_from_part.linear());
+    BodyMotion part;
+    part.pose = {body.pose.position + world_from_body * arm,
+                 normalised(body.pose.rotation * rotation_of(body_from_part.linear()))};
+    part.velocity = body.velocity + world_from_body * round;
+    part.acceleration =
+        body.acceleration + world_from_body * (glm::cross(body.angular_acceleration, arm) +
+                                               glm::cross(body.angular_velocity, round));
+    part.angular_velocity = part_from_body * body.angular_velocity;
+    part.angular_acceleration = part_from_body * body.angular_acceleration;
+    return part;
+}
+
 namespace {
 
 /// The turn from `a` to `b` in the axes of either.
@@ -125,7 +147,15 @@ RotationSpline::RotationSpline(const std::vector<double>& knots,
     }
 }
 
-Rotation RotationSpline::at(const std::vector<double>& knots, double u) const {
+// The place on the curve within one span: the rotation at its first knot, and the three turns after
+// it, of which each is weighted by a cumulative Bernstein polynomial of degree 3.
+struct RotationSpline::Arc {
+    Rotation begin;
+    std::array<Vector3, 3> turns;
+    double t = 0, width = 0;  // the fraction of the span, and its width
+};
+
+RotationSpline::Arc RotationSpline::arc_at(const std::vector<double>& knots, double u) const {
     const KnotSpan span = span_of(knots, u);
     const Rotation& a = rotations_[span.first];
     const Rotation& b = rotations_[span.first + 1];
@@ -133,11 +163,36 @@ Rotation RotationSpline::at(const std::vector<double>& knots, double u) const {
     const Vector3 third = velocities_[span.first + 1] * (span.width / 3);
     const Vector3 second = rotation_vector(rotation_by(first).inverse() * a.inverse() * b *
                                            rotation_by(third).inverse());
-    // The cumulative Bernstein polynomials of degree 3.
-    const double t = span.fraction, left = 1 - t;
-    return normalised(a * rotation_by(first * (1 - left * left * left)) *
-                      rotation_by(second * (t * t * (3 - 2 * t))) *
-                      rotation_by(third * (t * t * t)));
+    return {a, {first, second, third}, span.fraction, span.width};
+}
+
+Rotation RotationSpline::at(const std::vector<double>& knots, double u) const {
+    const auto [a, turns, t, width] = arc_at(knots, u);
+    const double left = 1 - t;
+    return normalised(a * rotation_by(turns[0] * (1 - left * left * left)) *
+                      rotation_by(turns[1] * (t * t * (3 - 2 * t))) *
+                      rotation_by(turns[2] * (t * t * t)));
+}
+
+RotationSpline::Turning RotationSpline::turning(const std::vector<double>& knots, double u) const {
+    const auto [a, turns, t, width] = arc_at(knots, u);
+    const double left = 1 - t;
+    const std::array<double, 3> weights{1 - left * left * left, t * t * (3 - 2 * t), t * t * t};
+    const std::array<double, 3> first{3 * left * left, 6 * t * left, 3 * t * t};
+    const std::array<double, 3> second{-6 * left, 6 - 12 * t, 6 * t};
+    Turning result;
+    for (std::size_t i = 0; i < 3; ++i) {
+        // The product R E(t) of rotations, with E about a fixed axis and E' = E [w]x, has the
+        // angular velocity E^T omega + w in its own axes, whose derivative is
+        // E^T alpha - w x E^T omega + w'.
+        const Matrix3 back = glm::transpose(rotation_by(turns[i] * weights[i]).matrix());
+        const Vector3 own = turns[i] * (first[i] / width);
+        const Vector3 carried = back * result.velocity;
+        result.acceleration = back * result.acceleration - glm::cross(own, carried) +
+                              turns[i] * (second[i] / (width * width));
+        result.velocity = carried + own;
+    }
+    return result;
 }
 
 Rotation turned(const Rotation& a, const Rotation& b, double fraction) {
@@ -245,20 +300,47 @@ double Trajectory::place_at_length(double length) const {
     return u;
 }
 
+// The parameter of the path at a time.
+double Trajectory::place_at(double time) const {
+    if (lengths_.empty()) return time;
+    const KnotSpan span = span_of(times_, time);
+    return place_at_length(lengths_[span.first] +
+                           span.fraction * (lengths_[span.first + 1] - lengths_[span.first]));
+}
+
 Pose Trajectory::at(double time) const {
     if (poses_.size() == 1) return poses_.front();
-    double u = time;
-    if (!lengths_.empty()) {
-        const KnotSpan span = span_of(times_, time);
-        u = place_at_length(lengths_[span.first] +
-                            span.fraction * (lengths_[span.first + 1] - lengths_[span.first]));
-    }
+    const double u = place_at(time);
     if (positions_) return {positions_->at(knots_, u), rotations_->at(knots_, u)};
     const KnotSpan span = span_of(knots_, u);
     const Pose& a = poses_[span.first];
     const Pose& b = poses_[span.first + 1];
     return {a.position + span.fraction * (b.position - a.position),
             turned(a.rotation, b.rotation, span.fraction)};
+}
+
+BodyMotion Trajectory::motion_at(double time) const {
+    BodyMotion motion;
+    motion.pose = at(time);
+    if (poses_.size() == 1) return motion;
+    const double u = place_at(time);
+    const Vector3 by_u = positions_->velocity(knots_, u);
+    const Vector3 by_u_u = positions_->acceleration(knots_, u);
+    double rate = 1, rate_change = 0;  // du/dt and d2u/dt2
+    if (!lengths_.empty()) {
+        // The speed c is constant, so that du/dt = c / |r'| and d2u/dt2 = -c^2 (r'.r'') / |r'|^4.
+        const double speed = lengths_.back() / (times_.back() - times_.front());
+        const double square = glm::dot(by_u, by_u);
+        rate = speed / std::sqrt(square);
+        rate_change = -rate * rate * glm::dot(by_u, by_u_u) / square;
+    }
+    const RotationSpline::Turning turning = rotations_->turning(knots_, u);
+    motion.velocity = rate * by_u;
+    motion.acceleration = rate * rate * by_u_u + rate_change * by_u;
+    motion.angular_velocity = rate * turning.velocity;
+    motion.angular_acceleration =
+        rate * rate * turning.acceleration + rate_change * turning.velocity;
+    return motion;
 }
 
 Pose Trajectory::at_or_beyond(double time) const {

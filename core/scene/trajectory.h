@@ -52,6 +52,19 @@ inline Pose pose_of(const Affine& rigid) {
     return {at_origin_plus(rigid.offset()), rotation_of(rigid.linear())};
 }
 
+/// A body's pose in the world, and how it changes with time.
+struct BodyMotion {
+    Pose pose;
+    Vector3 velocity{0.0};              // of its origin, world [m/s]
+    Vector3 acceleration{0.0};          // of its origin, world [m/s^2]
+    Vector3 angular_velocity{0.0};      // in the body's axes [rad/s]
+    Vector3 angular_acceleration{0.0};  // in the body's axes [rad/s^2]
+};
+
+/// The motion of what is fixed to a body, `body_from_part` (rigid): with the lever arm r in the
+/// body's axes, a + R (alpha x r + omega x (omega x r)).
+BodyMotion motion_of_part(const BodyMotion& body, const Affine& body_from_part);
+
 /// The pose of a body at a time [s].
 struct TimedPose {
     double time = 0;
@@ -87,6 +100,8 @@ class PositionSpline {
     Point3 at(const std::vector<double>& knots, double u) const;
     /// The derivative of the position by the knots' parameter.
     Vector3 velocity(const std::vector<double>& knots, double u) const;
+    /// The second derivative by the knots' parameter.
+    Vector3 acceleration(const std::vector<double>& knots, double u) const;
 
   private:
     std::vector<Point3> points_;
@@ -105,8 +120,17 @@ class RotationSpline {
     RotationSpline(const std::vector<double>& knots, const std::vector<Rotation>& rotations);
 
     Rotation at(const std::vector<double>& knots, double u) const;
+    /// The angular velocity and acceleration in the body's axes, by the knots' parameter; at a
+    /// knot, where the acceleration has a step, that after it.
+    struct Turning {
+        Vector3 velocity{0.0}, acceleration{0.0};
+    };
+    Turning turning(const std::vector<double>& knots, double u) const;
 
   private:
+    struct Arc;
+    Arc arc_at(const std::vector<double>& knots, double u) const;
+
     std::vector<Rotation> rotations_;
     std::vector<Vector3> velocities_;  // angular, in the body's axes, per unit of the parameter
 };
@@ -153,6 +177,10 @@ class Trajectory {
     /// The same, but outside it continues the motion at the nearest end: by point reflection there
     /// in time and space.
     Pose at_or_beyond(double time) const;
+    /// The pose with its exact derivatives. Precondition: is_smooth().
+    BodyMotion motion_at(double time) const;
+    /// Whether velocities are continuous: not if it goes straight from pose to pose.
+    bool is_smooth() const { return poses_.size() == 1 || positions_.has_value(); }
 
     /// The times of the poses that it goes through [s], ascending.
     const std::vector<double>& times() const { return times_; }
@@ -164,6 +192,7 @@ class Trajectory {
     Vector3 velocity(double u) const;
     double length_between(double u0, double u1) const;
     double place_at_length(double length) const;
+    double place_at(double time) const;
 
     std::vector<double> times_;
     std::vector<double> knots_;    // of the path: the times if they are given

@@ -119,6 +119,12 @@ Affine read_pose(const ConfigValue& value) {
     return read_pose_keys(map, true);
 }
 
+Affine read_placed_pose(const ConfigValue& value) {
+    ConfigMap map(value, {"position", "look_at", "up", "rotate", "matrix"},
+                  "write {position: [0, 0, 0], rotate: [0, 0, 0]}");
+    return read_pose_keys(map, false);
+}
+
 Affine read_transform(const ConfigValue& value) {
     ConfigMap map(value, {"scale", "rotate", "translate"},
                   "write {scale: 1, rotate: [0, 0, 0], translate: [0, 0, 0]}");

@@ -10,6 +10,10 @@ namespace uw {
 /// `pose`, a view, position and rotation, or matrix: world_from_camera, rigid.
 Affine read_pose(const ConfigValue& value);
 
+/// The same where no view is needed: without `look_at`, `rotate` and `matrix` the axes are those of
+/// what it is in.
+Affine read_placed_pose(const ConfigValue& value);
+
 /// `transform`, scale then rotate then translate: world_from_object.
 Affine read_transform(const ConfigValue& value);
 

@@ -22,6 +22,7 @@
 #include "cli/tools/edit_command.h"
 #include "cli/tools/measure_command.h"
 #include "cli/tools/points_commands.h"
+#include "cli/tools/record_command.h"
 #include "cli/tools/water_command.h"
 #include "cli/validate/validate_command.h"
 #include "core/scene/scene_context.h"
@@ -148,6 +149,7 @@ std::vector<Command> all_commands() {
     commands.push_back(dataset_command());
     commands.push_back(info_command());
     commands.push_back(water_command());
+    commands.push_back(record_command());
     commands.push_back(measure_command());
     commands.push_back(fit_command());
     commands.push_back(sweep_command());
@@ -193,6 +195,7 @@ const std::vector<OptionCase> k_input_options{
     {"dataset SCENE", {"dataset", "@", "-o", "set"}},
     {"info FILE|SCENE", {"info", "@", "--svg", "@"}},
     {"water PRESET|SCENE", {"water", "@", "--svg", "@"}},
+    {"record SCENE", {"record", "@", "--to", "1", "-o", "log"}},
     {"measure SCENE", {"measure", "@", "--csv", "@"}},
     {"fit SCENE",
      {"fit", "@", "--points", "points.csv", "--unknown", "camera.intrinsics.fov_x", "--csv", "@"}},
@@ -262,7 +265,7 @@ TEST_F(Inputs, OfCommandLinesAreNeverReplaced) {
         if (of.option == "fit --poses") name = "given.json", bytes = transforms;
         write(name, bytes);
         const test::ProgramResult result = run_soon(with_file(of.command, name));
-        if (of.option != "dataset SCENE") {
+        if (of.option != "dataset SCENE" && of.option != "record SCENE") {
             EXPECT_TRUE(result.exit_code == 2 || result.exit_code == 4)
                 << result.exit_code << result.err;
             EXPECT_TRUE(result.err.find("would replace") != std::string::npos ||
@@ -288,6 +291,7 @@ const std::vector<OptionCase> k_output_options{
     {"info --svg", {"info", "s.yaml", "--svg", "@.svg"}},
     {"water --csv", {"water", "s.yaml", "--csv", "@"}},
     {"water --svg", {"water", "s.yaml", "--svg", "@.svg"}},
+    {"record --output", {"record", "s.yaml", "-o", "@.json"}},
     {"measure --csv", {"measure", "s.yaml", "--csv", "@.csv"}},
     {"measure --svg", {"measure", "s.yaml", "--svg", "@.svg"}},
     {"fit --corners",
@@ -331,8 +335,9 @@ TEST_F(Inputs, AreNotWhatAnyOptionWrites) {
           "lamps: [{name: left, position: [-0.5, 0, 0], direction: [0, 0, 1], intensity: 50}]\n"
           "sensors: [{name: a, from: [0, 0, 1], to: [0, 0, 2], count: 2}]\n");
     for (const OptionCase& of : k_output_options) {
-        // --target reads nothing, and data sets are folders.
-        const bool is_refused = !of.option.starts_with("dataset") && of.option != "fit --target";
+        // --target reads nothing, and data sets and records are folders.
+        const bool is_refused = !of.option.starts_with("dataset") &&
+                                !of.option.starts_with("record") && of.option != "fit --target";
         const std::string input = of.option == "info --picture" ? "v.vdb" : "sky.exr";
         const std::string bytes = read(input);
         SCOPED_TRACE(of.option);

@@ -334,7 +334,7 @@ TEST_F(PinholeSets, OfKittiSayHowFarTheyAreOff) {
         said_by("kitti", {"--format", "kitti", "--set", k_flat_port, "--quiet"});
     EXPECT_EQ(test::line_count(said), 1) << said;
     EXPECT_TRUE(said.starts_with("warning: --format kitti has no words for a port")) << said;
-    EXPECT_NE(said.find("--pinhole-fit fits those of colmap, nerfstudio and euroc"),
+    EXPECT_NE(said.find("--pinhole-fit fits those of colmap, nerfstudio, euroc and mcap"),
               std::string::npos)
         << said;
     said_by("air", {"--format", "colmap", "--set", k_flat_port, "--quiet"});

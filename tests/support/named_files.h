@@ -240,6 +240,12 @@ inline std::vector<NamedFileCase> named_file_cases() {
          .bytes = poses,
          .change = "lamps=[{intensity: 50, trajectory: {file: @}}]",
          .changed = other_poses},
+        {.key = "sensors[*].file",
+         .file = "imu.yaml",
+         .bytes = "update_rate: 200\naccelerometer_noise_density: 0.002\n"
+                  "accelerometer_random_walk: 0.003\ngyroscope_noise_density: 0.0002\n"
+                  "gyroscope_random_walk: 0.00002\n",
+         .change = "sensors=[{type: imu, file: @}]"},
         {.key = "sky.file",
          .file = "sky.exr",
          .bytes = exr_bytes(8, 4),
