@@ -18,7 +18,7 @@ struct EmissionCellOptions {
     double cells = 32768;
     /// Places at which a cell's emission is looked up, along each axis: one per voxel, within these
     /// limits.
-    int min_places = 2, max_places = 5;
+    int min_places = 2, max_places = 8;
     /// The emission that is assumed of a dark cell beside a lit one, relative to that: the places
     /// may have missed a flame's edge, and what shines where nothing is expected would be lost.
     float at_edge = 0.02F;
@@ -98,6 +98,20 @@ EmissionSampler::EmissionSampler(const LitScene& scene) {
     if (!empty()) fill_means(scene);
 }
 
+Point3 EmissionSampler::Volume::at(std::size_t n, const Vector3& place) const {
+    const auto across = static_cast<std::size_t>(count[0]);
+    const auto down = static_cast<std::size_t>(count[1]);
+    return bounds.min +
+           edge * (Vector3(static_cast<double>(n % across), static_cast<double>(n / across % down),
+                           static_cast<double>(n / across / down)) +
+                   place);
+}
+
+std::size_t EmissionSampler::Volume::lit_at(double target) const {
+    const auto found = std::ranges::upper_bound(cumulative, target) - cumulative.begin();
+    return std::min(static_cast<std::size_t>(found), lit.size() - 1);
+}
+
 EmissionSampler::Volume EmissionSampler::make_volume(const LitScene& scene,
                                                      const SceneEmission& emission) {
     Volume volume;
@@ -142,26 +156,19 @@ void EmissionSampler::fill_cells(const LitScene& scene, Volume& volume) {
     const int places = std::clamp(voxel > 0 ? static_cast<int>(std::ceil(edge / voxel)) : 0,
                                   k_emission_cells.min_places, k_emission_cells.max_places);
     parallel_for(volume.cells.size(), [&](std::size_t n) {
-        const auto across = static_cast<std::size_t>(volume.count[0]);
-        const auto down = static_cast<std::size_t>(volume.count[1]);
-        const Point3 corner =
-            volume.bounds.min + volume.edge * Vector3(static_cast<double>(n % across),
-                                                      static_cast<double>(n / across % down),
-                                                      static_cast<double>(n / across / down));
         double emission = 0;
         for (int k = 0; k < places; ++k)
             for (int j = 0; j < places; ++j)
                 for (int i = 0; i < places; ++i) {
                     double value = 0;
-                    field.sample(corner + volume.edge *
-                                              (Vector3(i + 0.5, j + 0.5, k + 0.5) * (1.0 / places)),
+                    field.sample(volume.at(n, Vector3(i + 0.5, j + 0.5, k + 0.5) * (1.0 / places)),
                                  std::span(&value, 1));
                     if (!(value > 0)) continue;
                     const Spectrum emitted = volume.light->emission.of(value);
                     for (const double band : emitted.first(bands)) emission += band;
                 }
         std::vector<double> concentration(constituents, 0.0);
-        if (constituents > 0) scene.field->sample(corner + 0.5 * volume.edge, concentration);
+        if (constituents > 0) scene.field->sample(volume.at(n, Vector3(0.5)), concentration);
         double attenuation = 0;
         for (std::size_t b = 0; b < bands; ++b) {
             attenuation += medium.uniform.attenuation(b);
@@ -193,16 +200,12 @@ void EmissionSampler::add_faint_edge(Volume& volume) {
             }
 }
 
-EmissionSampler::Sphere EmissionSampler::sphere_of(const Volume& volume) const {
-    const auto across = static_cast<std::size_t>(volume.count[0]);
-    const auto down = static_cast<std::size_t>(volume.count[1]);
+EmissionSampler::Sphere EmissionSampler::sphere_of(const Volume& volume) {
     double sum = 0, square = 0;
     Vector3 mean(0);
     for (const std::size_t n : volume.lit) {
         const auto weight = static_cast<double>(volume.cells[n].emission);
-        const Vector3 place = volume.edge * Vector3(static_cast<double>(n % across) + 0.5,
-                                                    static_cast<double>(n / across % down) + 0.5,
-                                                    static_cast<double>(n / across / down) + 0.5);
+        const Vector3 place = volume.at(n, Vector3(0.5)) - volume.bounds.min;
         sum += weight;
         mean += weight * place;
         square += weight * glm::dot(place, place);
@@ -212,20 +215,10 @@ EmissionSampler::Sphere EmissionSampler::sphere_of(const Volume& volume) const {
 }
 
 double EmissionSampler::escaping_fraction(const Volume& volume) {
-    const auto across = static_cast<std::size_t>(volume.count[0]);
-    const auto down = static_cast<std::size_t>(volume.count[1]);
     double sum = 0;
     for (int i = 0; i < k_emission_cells.escapes; ++i) {
         const double target = (i + 0.5) / k_emission_cells.escapes * volume.power;
-        const auto chosen =
-            std::min(static_cast<std::size_t>(std::ranges::upper_bound(volume.cumulative, target) -
-                                              volume.cumulative.begin()),
-                     volume.lit.size() - 1);
-        const std::size_t n = volume.lit[chosen];
-        const Point3 x =
-            volume.bounds.min + volume.edge * Vector3(static_cast<double>(n % across) + 0.5,
-                                                      static_cast<double>(n / across % down) + 0.5,
-                                                      static_cast<double>(n / across / down) + 0.5);
+        const Point3 x = volume.at(volume.lit[volume.lit_at(target)], Vector3(0.5));
         double depth = 0;
         // Every direction is as good as any other: neighbours in the list take very different ones.
         const int scattered = i * 89 % k_emission_cells.escapes;
@@ -294,22 +287,11 @@ Vector3 EmissionSampler::sample(const Point3& x, double u, double v, double w) c
         }
         u = std::clamp(u, 0.0, 1.0);
     }
-    const std::vector<double>& sums = volume->cumulative;
-    const double target = u * sums.back();
-    const auto chosen =
-        std::min(static_cast<std::size_t>(std::ranges::upper_bound(sums, target) - sums.begin()),
-                 sums.size() - 1);
-    const double before = chosen == 0 ? 0 : sums[chosen - 1];
-    const std::size_t n = volume->lit[chosen];
-    const auto across = static_cast<std::size_t>(volume->count[0]);
-    const auto down = static_cast<std::size_t>(volume->count[1]);
-    const Point3 y =
-        volume->bounds.min +
-        volume->edge *
-            Vector3(static_cast<double>(n % across) +
-                        std::clamp((target - before) / (sums[chosen] - before), 0.0, 1.0),
-                    static_cast<double>(n / across % down) + v,
-                    static_cast<double>(n / across / down) + w);
+    const double target = u * volume->power;
+    const std::size_t chosen = volume->lit_at(target);
+    const double before = chosen == 0 ? 0 : volume->cumulative[chosen - 1];
+    const double inside = (target - before) / (volume->cumulative[chosen] - before);
+    const Point3 y = volume->at(volume->lit[chosen], Vector3(std::clamp(inside, 0.0, 1.0), v, w));
     const Vector3 way = y - x;
     const double length = glm::length(way);
     return length > 0 ? way / length : Vector3(0, 0, 1);

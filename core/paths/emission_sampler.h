@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -71,7 +70,7 @@ class EmissionSampler {
 
   private:
     struct Cell {
-        float emission = 0;     // mean, of which a sum over the bands is taken [W/(sr m^3)]
+        float emission = 0;     // mean over the cell and the bands [W/(sr m^3)]
         float attenuation = 0;  // of the water and its particles, mean over the bands [1/m]
     };
     struct Volume {
@@ -83,8 +82,14 @@ class EmissionSampler {
         std::vector<Cell> cells;         // x fastest
         std::vector<std::size_t> lit;    // those with light
         std::vector<double> cumulative;  // of their emission
-        double power = 0;                // int emission dV, summed over the bands [W/sr]
+        double power = 0;                // int emission dV, mean over the bands [W/sr]
         double uniform_attenuation = 0;  // outside, of the clearest band [1/m]
+
+        /// The point of cell `n` at `place` in the unit cube.
+        Point3 at(std::size_t n, const Vector3& place) const;
+        /// The lit cell at which the running sum of the emission exceeds `target`, an index into
+        /// `lit`.
+        std::size_t lit_at(double target) const;
     };
 
     static Volume make_volume(const LitScene& scene, const SceneEmission& emission);
@@ -92,13 +97,13 @@ class EmissionSampler {
     static void add_faint_edge(Volume& volume);
     static double escaping_fraction(const Volume& volume);
     void fill_means(const LitScene& scene);
-    Sphere sphere_of(const Volume& volume) const;
+    static Sphere sphere_of(const Volume& volume);
     double weight(const Volume& volume, const Point3& x) const;
 
     std::vector<Volume> volumes_;
     std::vector<Sphere> spheres_;  // by lamp
     Bounds means_bounds_;
-    std::vector<float> means_;  // in a lattice of k_means_along cells along each axis, x fastest
+    std::vector<float> means_;  // in a lattice over these bounds, x fastest
 };
 
 }  // namespace uw
