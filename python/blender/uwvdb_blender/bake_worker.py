@@ -68,13 +68,11 @@ class Work:
 
     def material(self, name, library):
         """A fresh copy each time, since baking rebuilds it."""
-        before = set(bpy.data.materials)
         with bpy.data.libraries.load(library or str(self.folder / "materials.blend"), link=False) as (source, wanted):
             if name not in source.materials:
                 raise RuntimeError(f"material '{name}' could not be handed over")
             wanted.materials = [name]
         made = wanted.materials[0]
-        assert made not in before
         for image, file in self.content["painted"].items():
             if image in bpy.data.images:
                 values = numpy.load(self.folder / file)
@@ -121,8 +119,8 @@ class Work:
         bpy.data.objects.remove(thing)
         bpy.data.meshes.remove(mesh)
         bpy.data.materials.remove(material)
-        for group in list(bpy.data.node_groups):
-            bpy.data.node_groups.remove(group)
+        # The next one comes with its own images, groups and objects, under the names that they had.
+        bpy.data.orphans_purge(do_local_ids=True, do_linked_ids=True, do_recursive=True)
 
 
 def build(arrays, job):
