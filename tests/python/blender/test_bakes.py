@@ -1,4 +1,4 @@
-# ctest labels: unit
+# ctest labels: unit slow
 """Bakes of materials leave the user's file alone, are made once, are as large as the picture needs, and are said
 where they fail."""
 
