@@ -15,7 +15,8 @@ import bpy
 import numpy
 from mathutils import Matrix
 
-from . import materials, meshes, program, trees
+from . import glass, materials, meshes, program, shaders, trees
+from .baked import Baked
 
 VERSION = 1  # of what is kept: what was baked by others is baked anew
 LEAST_SIZE, VIEW_SIZE = 64, 256
@@ -56,28 +57,6 @@ def sight(camera, world_from_camera, size):
         return focal / distance * inside
 
     return seen
-
-
-class Baked:
-    """Texture coordinates of the corners of a mesh, and what a material is on it."""
-
-    def __init__(self, content, uvs, wanted):
-        """`wanted` are the channels that the bake was asked for."""
-        self._content, self.uvs, self.wanted = content, uvs, wanted
-        self.channels = {name.split("_")[0] for name in content}
-
-    def factor(self, channel):
-        """Numbers, where they are the same everywhere."""
-        value = self._content.get(f"{channel}_factor")
-        return None if value is None else [float(part) for part in value]
-
-    def png(self, channel):
-        value = self._content.get(f"{channel}_png")
-        return None if value is None else value.tobytes()
-
-    @property
-    def emission_strength(self):
-        return float(self._content["emission_strength"])
 
 
 class _Job:
@@ -190,7 +169,7 @@ class Bakes:
         key = meshes.mesh_key(shown, depsgraph, self.variant(instance, depsgraph))
         matrix = instance.matrix_world.copy()
         for slot, need in enumerate(needed):
-            if need is None or materials.is_clear(slots[slot]) or not materials.shows_surface(slots[slot]):
+            if need is None or glass.is_clear(slots[slot]) or not materials.shows_surface(slots[slot]):
                 continue
             job = self._jobs.get((key, slot))
             if job is None:
@@ -495,7 +474,7 @@ def _write_job(jobs, folder, scene, threads):
             "channels": sorted(job.channels), "matrix": matrix, "uvs": job.part.uvs, "colours": job.part.colours,
             "texspace": job.part.texspace, "object": job.extra.get("object", {}),
             "attributes": job.extra.get("attributes", {}),
-            "is_single": sum(node.type in materials.shaders.SHADERS for node, _ in job.needs.uses) == 1,
+            "is_single": sum(node.type in shaders.SHADERS for node, _ in job.needs.uses) == 1,
             "out": str(cache / f"{job.digest}-{job.size}.npz")})
     with open(os.path.join(folder, "job.json"), "w", encoding="utf-8") as file:
         json.dump(content, file)

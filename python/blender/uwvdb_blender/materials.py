@@ -7,10 +7,10 @@ import bpy
 import numpy
 
 from . import images, shaders
+from .glass import is_clear, is_exactly_clear
 from .nodes import output_of, reachable, source_of
+from .shaders import WATER_INDEX
 
-# A dielectric of the index of water does not shine in it: what has no gloss gets this one.
-WATER_INDEX = 1.334
 DEFAULT = {"name": "default", "pbrMetallicRoughness": {
     "baseColorFactor": [0.8, 0.8, 0.8, 1], "metallicFactor": 0, "roughnessFactor": 1},
     "extensions": {"KHR_materials_ior": {"ior": WATER_INDEX}}}
@@ -21,6 +21,7 @@ HELD_OUT = {"name": "holdout", "pbrMetallicRoughness": {
 WRAPS = {"REPEAT": 10497, "EXTEND": 33071, "CLIP": 33071, "MIRROR": 33648}
 
 
+NOT_TRANSPARENT = "is opaque here: only cut-outs by a texture are supported"
 CHANNELS = ("colour", "surface", "normal", "emission", "alpha")
 
 
@@ -53,55 +54,6 @@ def shows_surface(material):
     if output is None:
         return True
     return output.inputs["Surface"].is_linked or not output.inputs["Volume"].is_linked
-
-
-def is_clear(material):
-    """Whether light goes through most of a surface: uwvdb has no refraction, and opaque glass would be black."""
-    if material is None or not material.use_nodes or material.node_tree is None:
-        return False
-    output = output_of(material)
-    found = source_of(output.inputs["Surface"]) if output is not None else None
-    return found is not None and _is_clear(found[0])
-
-
-def _is_clear(node):
-    if node.type in ("BSDF_TRANSPARENT", "BSDF_GLASS", "BSDF_REFRACTION"):
-        return True
-    if node.type == "BSDF_PRINCIPLED":
-        return _is_clear_principled(node.inputs)
-    if node.type not in ("MIX_SHADER", "ADD_SHADER"):
-        return False
-    sources = [source_of(socket) for socket in node.inputs if socket.type == "SHADER"]
-    clear = [source is not None and _is_clear(source[0]) for source in sources]
-    if node.type == "ADD_SHADER" or all(clear):
-        return all(clear)
-    factor = source_of(node.inputs[0])
-    if factor is not None:  # a coat, which reflects little but at grazing angles
-        return any(clear) and factor[0].type in ("FRESNEL", "LAYER_WEIGHT")
-    second = node.inputs[0].default_value
-    return clear[0] and second < 0.5 or clear[1] and second > 0.5
-
-
-def _is_clear_principled(inputs):
-    def value(*names):
-        socket = next((inputs[name] for name in names if name in inputs), None)
-        return None if socket is None or socket.is_linked else socket.default_value
-
-    emission = value("Emission Color", "Emission")
-    if value("Emission Strength") != 0 and (emission is None or max(emission[:3]) > 0):
-        return False
-    transmission, metallic = value("Transmission", "Transmission Weight"), value("Metallic")
-    return value("Alpha") == 0 or (transmission is not None and transmission > 0.5
-                                   and metallic is not None and metallic < 0.5)
-
-
-def is_exactly_clear(material):
-    """Whether nothing happens to light at a surface that is clear."""
-    node = source_of(output_of(material).inputs["Surface"])[0]
-    if node.type == "BSDF_PRINCIPLED":
-        return not node.inputs["Alpha"].is_linked and node.inputs["Alpha"].default_value == 0
-    colour = node.inputs["Color"] if node.type == "BSDF_TRANSPARENT" else None
-    return colour is not None and not colour.is_linked and min(colour.default_value[:3]) == 1
 
 
 def _multiplied(node):
@@ -192,61 +144,9 @@ class Exporter:
             self._note(material, "its volume shader is left out")
         self._convert_shader(material, done, found[0])
         if baked is not None:
-            self._set_baked(material, done, baked)
+            if not baked.put_into(done, self._glb, _threshold(material)):
+                self._note(material, NOT_TRANSPARENT)
         return done
-
-    def _set_baked(self, material, done, baked):
-        """Puts what was baked in the place of what is lost."""
-        pbr = done.content["pbrMetallicRoughness"]
-        if "colour" in baked.channels:
-            factor, png = baked.factor("colour"), baked.png("colour")
-            done.colours = None
-            pbr["baseColorFactor"] = factor[:3] + [1] if factor is not None else [1, 1, 1, 1]
-            pbr.pop("baseColorTexture", None)
-            if png is not None:
-                pbr["baseColorTexture"] = self._baked_texture(done, baked, png)
-            if "alpha" in baked.wanted:
-                self._set_baked_alpha(material, done, factor, png)
-        if "surface" in baked.channels:
-            factor, png = baked.factor("surface"), baked.png("surface")
-            pbr["roughnessFactor"], pbr["metallicFactor"] = factor if factor is not None else (1.0, 1.0)
-            pbr.pop("metallicRoughnessTexture", None)
-            if png is not None:
-                pbr["metallicRoughnessTexture"] = self._baked_texture(done, baked, png)
-        if "normal" in baked.wanted:
-            done.content.pop("normalTexture", None)
-            if baked.png("normal") is not None:
-                done.content["normalTexture"] = self._baked_texture(done, baked, baked.png("normal"))
-        if "emission" in baked.channels:
-            self._set_baked_emission(done, baked)
-
-    def _set_baked_alpha(self, material, done, factor, png):
-        alpha = factor[3] if factor is not None and len(factor) > 3 else 1.0
-        if png is not None or alpha < 0.5:
-            done.content["alphaMode"] = "MASK"
-            done.content["alphaCutoff"] = float(getattr(material, "alpha_threshold", 0.5))
-            done.content["pbrMetallicRoughness"]["baseColorFactor"][3] = alpha
-        elif alpha < 1:
-            self._note(material, "is opaque here: only cut-outs by a texture are supported")
-
-    def _set_baked_emission(self, done, baked):
-        for name in ("emissiveTexture", "emissiveFactor"):
-            done.content.pop(name, None)
-        done.content["extensions"].pop("KHR_materials_emissive_strength", None)
-        factor, png = baked.factor("emission"), baked.png("emission")
-        strength = max(factor) if factor is not None else baked.emission_strength
-        if strength <= 0:
-            return
-        done.content["emissiveFactor"] = [part / strength for part in factor] if factor is not None else [1, 1, 1]
-        done.content["extensions"]["KHR_materials_emissive_strength"] = {"emissiveStrength": strength}
-        if png is not None:
-            done.content["emissiveTexture"] = self._baked_texture(done, baked, png)
-
-    def _baked_texture(self, done, baked, png):
-        if baked not in done.uv_maps:
-            done.uv_maps.append(baked)
-        sampler = {"wrapS": WRAPS["EXTEND"], "wrapT": WRAPS["EXTEND"], "magFilter": 9729}
-        return {"index": self._glb.add_texture(png, "image/png", sampler), "texCoord": done.uv_maps.index(baked)}
 
     def _set_plain(self, done, colour, metallic, roughness, ior):
         done.content["pbrMetallicRoughness"].update(
@@ -281,7 +181,7 @@ class Exporter:
         if surface is not None:
             self._set_surface(material, done, surface, [node])
         elif node.type in shaders.SHADERS:
-            self._set_plain(done, (0.8, 0.8, 0.8, 1), 0, 1, _index_of([node]))
+            self._set_plain(done, (0.8, 0.8, 0.8, 1), 0, 1, shaders.index_of([node]))
             self._lose(material, CHANNELS, f"uwvdb has no {node.bl_label} shader; the material is a grey diffuse")
         else:
             self._note(material, f"uwvdb has no {node.bl_label} shader; the material is a grey diffuse")
@@ -290,9 +190,9 @@ class Exporter:
     def _set_surface(self, material, done, surface, nodes):
         """A Surface that is the same everywhere."""
         self._set_plain(done, surface.colour, min(surface.metallic, 1), min(max(surface.roughness, 0), 1),
-                        _index_of(nodes))
+                        shaders.index_of(nodes))
         if surface.alpha < 1:
-            self._note(material, "is opaque here: only cut-outs by a texture are supported")
+            self._note(material, NOT_TRANSPARENT)
         strength = max(surface.emission)
         if strength > 0:
             done.content["emissiveFactor"] = [max(part, 0) / strength for part in surface.emission]
@@ -324,7 +224,7 @@ class Exporter:
         else:
             self._convert_shader(material, done, found)
         self.lost, self._notes = lost, notes
-        done.content["extensions"]["KHR_materials_ior"] = {"ior": _index_of(reachable(node))}
+        done.content["extensions"]["KHR_materials_ior"] = {"ior": shaders.index_of(reachable(node))}
         self._lose(material, CHANNELS, "mixed shaders are not supported; the first that uwvdb has is taken")
 
     def _convert_principled(self, material, done, node):
@@ -332,7 +232,7 @@ class Exporter:
         self._unlinked(material, inputs.get("Specular IOR Level") or inputs["Specular"])
         if "Specular IOR Level" in inputs:
             self._unlinked(material, inputs["IOR"])
-        self._set_plain(done, (1, 1, 1, 1), 0, 1, _index_of([node]))
+        self._set_plain(done, (1, 1, 1, 1), 0, 1, shaders.index_of([node]))
         self._set_colour(material, done, inputs["Base Color"])
         self._set_roughness(material, done, inputs["Roughness"], inputs["Metallic"])
         self._set_normal(material, done, inputs["Normal"])
@@ -484,7 +384,7 @@ class Exporter:
         found = source_of(socket)
         if found is None:
             if socket.default_value < 1:
-                self._note(material, "is opaque here: only cut-outs by a texture are supported")
+                self._note(material, NOT_TRANSPARENT)
             return
         pbr = done.content["pbrMetallicRoughness"]
         node, output = found
@@ -495,7 +395,7 @@ class Exporter:
                        "is opaque here: alpha has to be that of the base colour's texture")
             return
         done.content["alphaMode"] = "MASK"
-        done.content["alphaCutoff"] = float(getattr(material, "alpha_threshold", 0.5))
+        done.content["alphaCutoff"] = _threshold(material)
 
     def _texture(self, material, done, node, file_of, use, channel):
         """glTF's reference to the texture of an image node, or None with a note."""
@@ -577,22 +477,5 @@ class Exporter:
                            1 - location[1] - cosine * scale[1]]}
 
 
-def _index_of(nodes):
-    """The refractive index of shaders: that of the first with gloss, or water's."""
-    for node in nodes:
-        if node.type == "BSDF_PRINCIPLED":
-            return _index_of_principled(node.inputs)
-        if node.type in shaders.SHADERS and shaders.SHADERS[node.type].has_gloss:
-            return 1.5
-    return WATER_INDEX
-
-
-def _index_of_principled(inputs):
-    """Specular 0.5 means 4 % in air, Fresnel's for the index 1.5; Blender 4 scales that of IOR."""
-    specular = inputs.get("Specular IOR Level") or inputs["Specular"]
-    f0 = 0.08 * float(specular.default_value)
-    if "Specular IOR Level" in inputs:
-        ior = float(inputs["IOR"].default_value)
-        f0 = ((ior - 1) / (ior + 1)) ** 2 * 2 * float(specular.default_value)
-    root = math.sqrt(min(max(f0, 0), 0.9))
-    return max((1 + root) / (1 - root), 1) if f0 > 0 else WATER_INDEX
+def _threshold(material):
+    return float(getattr(material, "alpha_threshold", 0.5))

@@ -5,7 +5,7 @@ import time
 
 import numpy
 
-from . import gltf, materials
+from . import glass, gltf, materials
 
 SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 WITHOUT_SURFACE = {"EMPTY", "CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER", "ARMATURE", "LATTICE",
@@ -171,7 +171,7 @@ class MeshFile:
         parts = []
         for index in corners.used_slots():
             material = slots[index] if slots else None
-            if materials.is_clear(material):
+            if glass.is_clear(material):
                 self._materials.note_clear(material)
             elif is_hole and materials.shows_surface(material):
                 parts.append(_Part(index, *self._materials.export_held_out()))

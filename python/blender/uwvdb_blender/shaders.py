@@ -1,5 +1,9 @@
 """What shaders reflect, let through and give off, as inputs of one Principled shader, and what of mixtures of them."""
 
+import math
+
+# A dielectric of the index of water does not shine in it: what has no gloss gets this one.
+WATER_INDEX = 1.334
 # What has no gloss has no part in a mixture's roughness, unless nothing else has.
 FAINT_GLOSS = 1e-3
 LEAST_GLOSS = 0.04  # a dielectric's in air
@@ -116,3 +120,24 @@ def _value(node, names):
         return None
     value = socket.default_value
     return float(value) if isinstance(value, (int, float)) else tuple(float(part) for part in value[:3])
+
+
+def index_of(nodes):
+    """The refractive index of shaders: that of the first with gloss, or water's."""
+    for node in nodes:
+        if node.type == "BSDF_PRINCIPLED":
+            return _principled_index(node.inputs)
+        if node.type in SHADERS and SHADERS[node.type].has_gloss:
+            return 1.5
+    return WATER_INDEX
+
+
+def _principled_index(inputs):
+    """Specular 0.5 means 4 % in air, Fresnel's for the index 1.5; Blender 4 scales that of IOR."""
+    specular = inputs.get("Specular IOR Level") or inputs["Specular"]
+    f0 = 0.08 * float(specular.default_value)
+    if "Specular IOR Level" in inputs:
+        ior = float(inputs["IOR"].default_value)
+        f0 = ((ior - 1) / (ior + 1)) ** 2 * 2 * float(specular.default_value)
+    root = math.sqrt(min(max(f0, 0), 0.9))
+    return max((1 + root) / (1 - root), 1) if f0 > 0 else WATER_INDEX

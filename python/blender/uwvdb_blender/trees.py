@@ -12,8 +12,8 @@ from .nodes import output_of
 OF_VIEW = {"FRESNEL": None, "LAYER_WEIGHT": None, "LIGHT_PATH": None, "CAMERA": None,
            "TEX_COORD": {"Camera", "Window", "Reflection"}, "NEW_GEOMETRY": {"Incoming", "Backfacing"}}
 # Those whose values differ from object to object of the same mesh: TexCoord by another object, besides.
-OF_OBJECT = {"OBJECT_INFO": None, "PARTICLE_INFO": None, "NEW_GEOMETRY": {"Position", "Normal", "True Normal", "Tangent"},
-             "VECT_TRANSFORM": None}
+OF_OBJECT = {"OBJECT_INFO": None, "PARTICLE_INFO": None, "VECT_TRANSFORM": None,
+             "NEW_GEOMETRY": {"Position", "Normal", "True Normal", "Tangent"}}
 # Those that a mesh's shape has an effect on, not only its texture coordinates and attributes.
 OF_SHAPE = {"NEW_GEOMETRY": None, "TEX_COORD": {"Object", "Normal"}, "AMBIENT_OCCLUSION": None, "BEVEL": None,
             "WIREFRAME": None, "OBJECT_INFO": set(), "TANGENT": None}

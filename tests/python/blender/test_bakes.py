@@ -1,4 +1,4 @@
-# ctest labels: unit
+# ctest labels: unit slow
 """Bakes of materials leave the user's file alone, are made once, are as large as the picture needs, and are said
 where they fail."""
 
@@ -172,3 +172,42 @@ def test_copies_that_differ_by_the_object():
         means.append(ours["albedo"][where].mean(0))
         close(means[-1], theirs["DiffCol"][where].mean(0), 5e-3, f"mean of copy {number}")
     assert numpy.abs(means[0] - means[1]).max() > 0.05, means
+
+
+def test_what_deforms_is_baked_once():
+    """Its looks depend on its shape at rest."""
+    scene = empty_scene(40, 40)
+    light("POINT", watts=100, location=(-1, 0, 1))
+    thing = ball("Fish", location=(0, 3, 0))
+    generated_on_a_bent_mesh(thing)
+    counts = []
+    for value in (1, 0.5, 0.2):
+        thing.data.shape_keys.key_blocks["Bent"].value = value
+        with Watched() as watched:
+            bpy.ops.render.render()
+        counts.append(watched.count)
+    assert counts == [1, 0, 0], counts
+
+
+def test_images_that_are_in_no_file():
+    """Two meshes with a material, whose image was painted and never saved."""
+    scene = empty_scene(120, 60)
+    light("POINT", watts=200, location=(-1, 0, 1))
+    image = bpy.data.images.new("Painted", 32, 32)
+    image.pixels.foreach_set(numpy.tile(numpy.array([0.8, 0.3, 0.1, 1], numpy.float32), 32 * 32))
+    image.update()
+    things = [unwrapped_box(name, location=(x, 4, 0)) for name, x in (("One", -0.8), ("Two", 0.8))]
+    things[1].data.vertices[0].co.x -= 0.1
+    nodes, links, inputs = shaded(things[0])
+    source = textured(nodes, image).outputs[0]
+    pattern = connected(nodes, links, "ShaderNodeTexChecker", 0, Scale=2.0)
+    links.new(mixed(nodes, links, source, pattern, 0.2), inputs["Base Color"])
+    things[1].data.materials.append(things[0].active_material)
+    layer = scene.view_layers[0]
+    layer.use_pass_object_index, layer.use_pass_diffuse_color, layer.uwvdb.use_albedo = True, True, True
+    for number, thing in enumerate(things, 1):
+        thing.pass_index = number
+    ours, theirs = render(), render("CYCLES", samples=16)
+    for number in (1, 2):
+        where = inner(ours["IndexOB"][..., 0], number) & (theirs["IndexOB"][..., 0] == number)
+        close(ours["albedo"][where].mean(0), theirs["DiffCol"][where].mean(0), 1e-2, f"mean of box {number}")

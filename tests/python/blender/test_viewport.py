@@ -272,7 +272,8 @@ def test_bakes_appear_when_they_are_there():
                 time.sleep(0.01)
             assert not shown.surroundings.is_baking
             shown.update()
-            assert not shown.surroundings.is_baking and not any("'Checked'" in note for note in shown.surroundings.notes)
+            assert not shown.surroundings.is_baking
+            assert not any("'Checked'" in note for note in shown.surroundings.notes)
             shown.ask(view, through_camera=True)
             after = shown.final()
         wanted = render()["Combined"]
