@@ -102,9 +102,10 @@ PointTable find_board_corners(const std::vector<std::filesystem::path>& pictures
         table.images.push_back(file.filename().string());
         for (std::size_t i = 0; i < corners.size(); ++i) {
             const auto columns = static_cast<std::size_t>(board.columns);
+            const std::size_t column = i % columns, row = i / columns;
             table.points.push_back({image,
-                                    {board.square * static_cast<double>(i % columns),
-                                     board.square * static_cast<double>(i / columns), 0},
+                                    {board.square * static_cast<double>(column),
+                                     board.square * static_cast<double>(row), 0},
                                     corners[i]});
         }
     }

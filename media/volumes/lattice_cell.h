@@ -23,7 +23,7 @@ class CellCorners {
 
     CellCorners() = default;
     CellCorners(const Four& at_z, const Four& at_next_z) {
-        for (int i = 0; i < 2; ++i) {
+        for (std::size_t i = 0; i < 2; ++i) {
             const Pair low{double(at_z[2 * i]), double(at_z[2 * i + 1])};
             const Pair high{double(at_next_z[2 * i]), double(at_next_z[2 * i + 1])};
             at_[i] = low;
@@ -53,7 +53,7 @@ class CellCorners {
     }
 
     bool zero() const {
-        for (int i = 0; i < 2; ++i)
+        for (std::size_t i = 0; i < 2; ++i)
             for (int j = 0; j < 2; ++j)
                 if (at_[i][j] != 0 || rise_[i][j] != 0) return false;
         return true;

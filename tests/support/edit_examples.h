@@ -23,6 +23,7 @@ namespace uw::test {
 /// What `uwvdb render` and the lamp editor show of one scene, as values R G B of each pixel.
 struct TwoPictures {
     std::vector<double> rendered, edited;
+    double stated_error = 0;  ///< of `rendered`: RMS of its pixels' standard errors; 0: it has none
 
     double mean() const {
         double sum = 0;
@@ -42,24 +43,30 @@ struct TwoPictures {
     }
 };
 
-/// The project's scene of this name, `width` x `height` pixels, in the editor's session.
+/// The project's scene of this name, `width` x `height` pixels and with this light, in the editor's
+/// session.
 inline std::shared_ptr<const EditedScene> edited_example(const std::string& name, int width,
-                                                         int height) {
+                                                         int height,
+                                                         RenderDesc::Scattering scattering) {
     const std::filesystem::path file =
         std::filesystem::path(UWVDB_SOURCE_DIR) / "assets/scenes" / name;
     const std::string text = read_text_file(file, name, YamlLimits{}.bytes, "scene");
     auto scene = std::make_shared<EditedScene>(
         *make_edited_scene(text, parse_yaml(text, name), file, {}, 1));
-    scene->scene =
-        scene->scene.with([&](SceneDesc& desc) { resize_image(desc.camera, width, height); });
+    scene->scene = scene->scene.with([&](SceneDesc& desc) {
+        resize_image(desc.camera, width, height);
+        desc.render.scattering = scattering;
+    });
     scene->camera = std::make_shared<Camera>(scene->scene.desc().camera);
     return scene;
 }
 
 /// The total that the page mixes of the bytes of the session's final picture
 /// (edit/session/picture.h), and the image that the renderer makes of the whole scene at once.
-inline TwoPictures both_pictures_of(const std::string& name, int width, int height) {
-    const std::shared_ptr<const EditedScene> scene = edited_example(name, width, height);
+inline TwoPictures both_pictures_of(const std::string& name, int width, int height,
+                                    RenderDesc::Scattering scattering) {
+    const std::shared_ptr<const EditedScene> scene =
+        edited_example(name, width, height, scattering);
     PictureRenderer renderer(quiet_callbacks());
     const ReadPicture served =
         read_picture(picture_bytes(*final_picture(renderer, scene), SampleType::f32));
@@ -93,6 +100,18 @@ inline TwoPictures both_pictures_of(const std::string& name, int width, int heig
     for (std::size_t at = 0; at < film.values().size(); at += channels)
         for (std::size_t c = 0; c < 3; ++c)
             pictures.rendered.push_back(static_cast<double>(film.values()[at + c]));
+    const std::vector<double>& of_bands = whole.report().multiple_error_of_bands;
+    if (!of_bands.empty()) {
+        EXPECT_EQ(of_bands.size(), 3U);
+        double squares = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            double mean = 0;
+            for (std::size_t i = c; i < pictures.rendered.size(); i += 3)
+                mean += 3 * pictures.rendered[i] / static_cast<double>(pictures.rendered.size());
+            squares += std::pow(of_bands[c] * mean, 2) / 3;
+        }
+        pictures.stated_error = std::sqrt(squares);
+    }
     return pictures;
 }
 

@@ -24,6 +24,7 @@ inline double visible_transmittance(const LitScene& scene, std::size_t band, con
 /// at which a diffuse surface lies: reflected once, never scattered.
 inline void add_direct_light(const LitScene& scene, const Ray& ray, const SurfaceHit& hit,
                              double weight, TermSums& sums) {
+    sums.set_weight(weight);
     const Lamp& lamp = scene.emitters->front();
     const Vector3 way = hit.position - lamp.position();
     const double r2 = glm::dot(way, way), cosine = -glm::dot(way, hit.normal) / std::sqrt(r2);
@@ -35,7 +36,6 @@ inline void add_direct_light(const LitScene& scene, const Ray& ray, const Surfac
                       visible_transmittance(scene, b, lamp.position(), hit.position) *
                       hit.reflectance[b] / std::numbers::pi *
                       visible_transmittance(scene, b, ray.origin, hit.position);
-    sums.set_weight(weight);
     sums.add({0, 0, 1, false, hit.distance, radiance});
 }
 

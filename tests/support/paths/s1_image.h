@@ -60,6 +60,7 @@ inline S1Batch trace_s1(const PathScene& scene, const PathTracer& tracer, std::u
         std::array<double, 3> path{};
     };
     S1Batch batch;
+    batch.sums.set_weight(1.0 / rays);
     thread_local CameraSegment segment;
     for (int i = 0; i < rays; ++i) {
         const std::uint64_t ray_seed = PathRandom::seed_of(seed, static_cast<std::uint64_t>(i));
