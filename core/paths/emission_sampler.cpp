@@ -22,7 +22,7 @@ struct EmissionCellOptions {
     /// The emission that is assumed of a dark cell beside a lit one, relative to that: the places
     /// may have missed a flame's edge, and what shines where nothing is expected would be lost.
     float at_edge = 0.02F;
-    /// Of the lattice of EmissionSampler::mean, along each axis, and the directions of a mean.
+    /// EmissionSampler::mean has so many cells along each axis, and a mean so many directions.
     int means_along = 16, directions = 20;
     /// Places in the light from which its escape is judged.
     int escapes = 256;
