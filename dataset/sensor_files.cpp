@@ -53,11 +53,11 @@ class ReadingTimes {
                 "other times",
                 subject, span.first, span.last));
         const double count = static_cast<double>(range_.last - range_.first) + 1;
-        if (count > k_most_readings)
+        if (count > k_max_readings)
             throw InputError(fmt::format(
                 "{}: would be read {:.0f} times from {:g} to {:g} s, and at most {:.0f} are "
                 "written at once; give a shorter time or fewer per second",
-                subject, count, span.first, span.last, k_most_readings));
+                subject, count, span.first, span.last, k_max_readings));
     }
 
     const ReadingRange& range() const { return range_; }

@@ -18,7 +18,7 @@ struct NamedText {
 };
 
 /// The most readings of a sensor that are written, which are held in memory.
-inline constexpr double k_most_readings = 5'000'000;
+inline constexpr double k_max_readings = 5'000'000;
 
 /// The files of the sensors from the first to the last of the times `span` [s]:
 ///
@@ -31,7 +31,7 @@ inline constexpr double k_most_readings = 5'000'000;
 /// - sensors.json: the poses of sensors and cameras in the body's axes
 ///
 /// `whole`: as it was read. Throws as record_sensor and FrameStamps; InputError for more than
-/// k_most_readings, and if the vehicle has no pose in the span.
+/// k_max_readings, and if the vehicle has no pose in the span.
 std::vector<NamedText> sensor_files(const SceneDesc& whole, const TimeRange& span, double rate = 0);
 
 /// Whether the scene has an IMU.

@@ -60,8 +60,8 @@ class GuidingDistribution {
         // The irradiance by a sun's light that the water scatters once, by any angle. Its radiance
         // has the shape of the phase function around the sun's direction. 0 for all other lamps.
         double scattered_once = 0;
-        // The intensity of an emissive volume that paths meet: its direct light is part of what they
-        // find there. 0 for all other lamps.
+        // The intensity of an emissive volume that paths meet: its direct light is part of what
+        // they find there. 0 for all other lamps.
         double emitted = 0;
         LampRadianceTable::Place place;
     };

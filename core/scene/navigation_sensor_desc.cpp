@@ -17,8 +17,8 @@ namespace uw {
 
 namespace {
 
-constexpr double k_most_readings_per_second = 10'000;
-constexpr int k_largest_sensor_seed = 2'147'483'647;
+constexpr double k_max_readings_per_second = 10'000;
+constexpr int k_max_sensor_seed = 2'147'483'647;
 constexpr std::size_t k_longest_imu_file = 1 << 20;  // bytes; Kalibr's have 300
 
 /// The keys of a group that share a prefix: `accelerometer_bias`.
@@ -120,7 +120,7 @@ NavigationSensorDesc::Kind read_imu(ConfigMap& map, const SceneContext& context,
         imu.accelerometer = given.accelerometer;
         imu.gyroscope = given.gyroscope;
         if (!given.rostopic.empty()) imu.rostopic = given.rostopic;
-        if (given.update_rate > k_most_readings_per_second)
+        if (given.update_rate > k_max_readings_per_second)
             file->fail("its update_rate is above 10000 Hz; give another");
         sensor.update_rate = given.update_rate;
     }
@@ -361,11 +361,11 @@ NavigationSensorDesc read_navigation_sensor(ConfigMap& map, SensorType type, std
             break;
     }
     if (const auto rate = map.find("update_rate"))
-        sensor.update_rate = rate->within(1e-3, k_most_readings_per_second,
+        sensor.update_rate = rate->within(1e-3, k_max_readings_per_second,
                                           "give the readings per second, 0.001 to 10000");
     if (const auto seed = map.find("seed"))
         sensor.seed = static_cast<std::uint64_t>(
-            seed->integer(0, k_largest_sensor_seed, "give a whole number, 0 to 2147483647"));
+            seed->integer(0, k_max_sensor_seed, "give a whole number, 0 to 2147483647"));
     map.finish(fmt::format("type '{}'", type_word(sensor)));
     return sensor;
 }
