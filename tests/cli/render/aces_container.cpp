@@ -21,7 +21,7 @@ TEST_F(AcesContainer, HasTheLightOfTheImageInAces) {
     const test::ImageFile srgb = test::read_exr(folder_ / "srgb.exr");
     const test::ImageFile aces = test::read_exr(folder_ / "aces.exr");
     EXPECT_EQ(aces.names, (std::vector<std::string>{"R", "G", "B", "A"}));
-    EXPECT_EQ(aces.metadata.at("format of values"), "half");
+    EXPECT_EQ(aces.formats.at("R"), "half");
     EXPECT_EQ(aces.metadata.at("compression"), "none");
     EXPECT_EQ(aces.metadata.at("acesImageContainerFlag"), "1");
     EXPECT_EQ(aces.metadata.at("uwvdb/rgb_space"), "ACES2065-1");

@@ -41,7 +41,7 @@ class OutputFormats : public test::CliTest {
         return largest;
     }
     bool has_bits(const std::string& name, const std::string& bits) const {
-        return test::read_exr(folder_ / name).metadata.at("format of values") == bits;
+        return test::read_exr(folder_ / name).formats.at("R") == bits;
     }
 };
 
