@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "media/volumes/block_map.h"
 #include "media/volumes/grid_cells.h"
 
 namespace uw {
@@ -111,9 +112,16 @@ Region between_tiles(const CellReader& reader, const Coord& cell) {
     return region;
 }
 
-Region region_at(const CellReader& reader, const Coord& cell) {
+/// `map` may be null.
+Region region_at(const CellReader& reader, const BlockMap* map, const Coord& cell) {
     Region region;
-    if (reader.leaf(cell) != nullptr) {
+    const BlockMap::Kind kind = map != nullptr ? map->kind(cell) : BlockMap::Kind::edge;
+    if (kind == BlockMap::Kind::empty) {
+        region.kind = Region::Kind::constant;
+        map->find_empty(cell, region.low, region.high);
+        return region;
+    }
+    if (kind == BlockMap::Kind::voxels || (map == nullptr && reader.leaf(cell) != nullptr)) {
         region.kind = Region::Kind::leaf;
         region.low = cell & ~(CellReader::k_edge - 1);
         region.high = region.low.offsetBy(CellReader::k_edge);
@@ -150,6 +158,7 @@ NanoGrid::NanoGrid(std::shared_ptr<const void> storage, const void* grid, std::s
     }
     const Grid& typed = *static_cast<const Grid*>(grid_);
     if (RootBlocks::are_many(typed)) roots_ = std::make_shared<const RootBlocks>(typed);
+    map_ = BlockMap::of(typed, support_);
 }
 
 double NanoGrid::sample(const Point3& p) const {
@@ -171,12 +180,14 @@ double NanoGrid::integrate(const LatticeLine& line) const {
     while (!walk.done()) {
         const Coord cell = walk.cell();
         const double begin = walk.t();
-        if (reader.enter(cell)) {
+        const BlockMap::Kind kind = map_ ? map_->kind(cell) : BlockMap::Kind::voxels;
+        const bool is_edge = kind == BlockMap::Kind::edge;
+        if ((is_edge || kind == BlockMap::Kind::voxels) && (reader.enter(cell) || is_edge)) {
             const double end = walk.leave(reader.low(), reader.low().offsetBy(CellReader::k_edge));
             if (end > begin) integral += line_integral.over_block(reader, begin, end);
             continue;
         }
-        const Region region = region_at(reader, cell);
+        const Region region = region_at(reader, map_.get(), cell);
         const double end = walk.leave(region.low, region.high);
         if (region.kind == Region::Kind::constant) {
             integral += static_cast<double>(region.value) * (end - begin);
@@ -191,7 +202,7 @@ std::size_t NanoGrid::regions_along(const LatticeLine& line) const {
     const CellReader reader(grid_, roots_.get());
     std::size_t count = 0;
     for (LatticeWalk walk(line, 0, 1, support_); !walk.done(); ++count) {
-        const Region region = region_at(reader, walk.cell());
+        const Region region = region_at(reader, map_.get(), walk.cell());
         walk.leave(region.low, region.high);
     }
     return count;
@@ -204,7 +215,7 @@ void NanoGrid::append_intervals(const LatticeLine& line, double begin, double en
     LatticeWalk walk(line, begin, end, support_);
     while (!walk.done()) {
         const Coord cell = walk.cell();
-        const Region region = region_at(reader, cell);
+        const Region region = region_at(reader, map_.get(), cell);
         const bool constant = region.kind == Region::Kind::constant;
         const bool empty = (constant && region.value == 0) ||
                            (region.kind == Region::Kind::cells && reader.corners(cell).zero());

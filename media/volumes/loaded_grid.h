@@ -71,6 +71,7 @@ struct GridStretch {
     bool constant = false;      // one value throughout
 };
 
+class BlockMap;
 class RootBlocks;
 
 /// One sparse grid of 16-bit quantised values (NanoVDB, Fp16: within a block of 8^3 voxels the
@@ -112,6 +113,7 @@ class NanoGrid {
     std::shared_ptr<const void> storage_;
     const void* grid_;
     std::shared_ptr<const RootBlocks> roots_;  // null for a few
+    std::shared_ptr<const BlockMap> map_;      // null for a box of mostly nothing
     std::size_t bytes_;
     Bounds support_;
 };
