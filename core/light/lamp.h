@@ -87,6 +87,7 @@ class Lamp {
     bool has_even_core() const { return emitter_->has_even_core(); }
     bool is_soft() const { return emitter_->is_soft(); }
     DirectionCone cone() const { return emitter_->cone(); }
+    FineStructure fine_structure() const { return emitter_->fine_structure(); }
     Interval beam(const Ray& ray, const Interval& interval) const {
         return emitter_->beam(ray, interval);
     }

@@ -25,6 +25,12 @@ DirectionCone MirroredEmitter::cone() const {
     return cone;
 }
 
+FineStructure MirroredEmitter::fine_structure() const {
+    FineStructure fine = original_->fine_structure();
+    if (fine.normal) fine.normal = surface_.mirrored(*fine.normal);
+    return fine;
+}
+
 void MirroredEmitter::append_profile_breaks(const Ray& ray, const Interval& interval,
                                             std::vector<double>& s) const {
     original_->append_profile_breaks(surface_.mirrored(ray), interval, s);

@@ -25,6 +25,7 @@ class MirroredEmitter final : public Emitter {
     Interval beam(const Ray& ray, const Interval& interval) const override {
         return beam_of(cone(), position_, ray, interval);
     }
+    FineStructure fine_structure() const override;
     void append_profile_breaks(const Ray& ray, const Interval& interval,
                                std::vector<double>& s) const override;
     LampPassage passage(const Ray& ray) const override {

@@ -20,19 +20,10 @@ Interval beam_of(const DirectionCone& cone, const Point3& apex, const Ray& ray,
     std::vector<double> cuts;
     cuts.reserve(4);  // two of them are ends
     append_cone_crossings(ray, apex, cone.axis, cone.cosine, cuts);
-    std::erase_if(cuts, [&](double s) { return s <= interval.begin || s >= interval.end; });
-    cuts.push_back(interval.begin);
-    cuts.push_back(interval.end);
-    std::sort(cuts.begin(), cuts.end());
-    // The cone is not crossed between two cuts: a segment lies entirely inside or outside.
-    Interval lit{interval.begin, interval.begin};
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-        const Vector3 middle = ray.at(0.5 * (cuts[i] + cuts[i + 1])) - apex;
-        if (glm::dot(middle, cone.axis) < cone.cosine * glm::length(middle)) continue;
-        if (lit.length() == 0) lit.begin = cuts[i];
-        lit.end = cuts[i + 1];
-    }
-    return lit;
+    return lit_part(ray, interval, cuts, [&](const Point3& x) {
+        const Vector3 v = x - apex;
+        return glm::dot(v, cone.axis) >= cone.cosine * glm::length(v);
+    });
 }
 
 LampPassage passage_of(const Point3& point, double squared_offset, const Ray& ray) {
@@ -60,6 +51,17 @@ bool PointEmitter::has_even_core() const {
 
 DirectionCone PointEmitter::cone() const {
     return std::visit([](const auto& profile) { return profile.cone(); }, profile_);
+}
+
+Interval PointEmitter::beam(const Ray& ray, const Interval& interval) const {
+    const Interval in_cone = beam_of(cone(), position_, ray, interval);
+    const auto* line = std::get_if<LineProfile>(&profile_);
+    return line != nullptr ? line->beam(ray, in_cone, position_) : in_cone;
+}
+
+FineStructure PointEmitter::fine_structure() const {
+    if (const auto* line = std::get_if<LineProfile>(&profile_)) return {false, line->normal()};
+    return {std::holds_alternative<ImageProfile>(profile_), std::nullopt};
 }
 
 void PointEmitter::append_profile_breaks(const Ray& ray, const Interval& interval,

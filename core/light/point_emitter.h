@@ -38,9 +38,8 @@ class PointEmitter final : public Emitter {
     bool has_even_core() const override;
     bool is_soft() const override { return std::holds_alternative<SoftSpotProfile>(profile_); }
     DirectionCone cone() const override;
-    Interval beam(const Ray& ray, const Interval& interval) const override {
-        return beam_of(cone(), position_, ray, interval);
-    }
+    Interval beam(const Ray& ray, const Interval& interval) const override;
+    FineStructure fine_structure() const override;
     void append_profile_breaks(const Ray& ray, const Interval& interval,
                                std::vector<double>& s) const override;
     LampPassage passage(const Ray& ray) const override {

@@ -80,12 +80,21 @@ FineBeams::FineBeams(const RaySource& rays, const std::vector<Lamp>& emitters) :
 
 std::optional<FineBeams::Beam> FineBeams::beam_of(const Lamp& emitter) {
     const DirectionCone cone = emitter.cone();
+    const FineStructure fine = emitter.fine_structure();
+    if (fine.is_everywhere || fine.normal) {
+        const double angle = std::acos(cone.cosine), slope = std::tan(std::min(angle, k_max_angle));
+        return Beam{{}, glm::normalize(cone.axis), slope, slope, angle > k_max_angle, fine};
+    }
     const double core = core_angle(emitter, cone.axis);
     if (core >= k_max_angle) return std::nullopt;
     double outer = k_outer_factor * core;
     if (!cone.has_all()) outer = std::min(outer, std::max(core, std::acos(cone.cosine)));
-    return Beam{
-        {}, glm::normalize(cone.axis), std::tan(core), std::tan(std::min(outer, k_max_angle))};
+    return Beam{{},
+                glm::normalize(cone.axis),
+                std::tan(core),
+                std::tan(std::min(outer, k_max_angle)),
+                false,
+                {}};
 }
 
 std::optional<FineBeams::Bundle> FineBeams::bundle(const ImageRectangle& area) const {
@@ -115,6 +124,7 @@ std::optional<FineBeams::Bundle> FineBeams::bundle(const ImageRectangle& area) c
         Vector3 outwards = glm::normalize(glm::cross(a.direction, b.direction));
         if (glm::dot(outwards, found.direction) > 0) outwards = -outwards;
         found.outwards[k] = outwards;
+        found.corners[k] = a.direction;
         // Behind a port, rays have no common origin.
         found.offsets[k] = std::max(glm::dot(outwards, from_origin(a.origin)),
                                     glm::dot(outwards, from_origin(b.origin)));
@@ -138,9 +148,23 @@ bool FineBeams::has_any(const ImageRectangle& area, double width) const {
                         near_, [&](const Beam* beam) { return is_fine_in(*part, *beam, width); });
 }
 
+// Within a rectangle's own size of the plane the light changes by factors from ray to ray.
+bool FineBeams::may_lie_in_sheet(const Bundle& bundle, const Vector3& normal) {
+    double least = 1, most = -1;
+    for (const Vector3& direction : bundle.corners) {
+        const double off = glm::dot(direction, normal);
+        least = std::min(least, off);
+        most = std::max(most, off);
+    }
+    const double size = most - least + 2 * k_bulge * bundle.pixel;
+    return least - size < 0 && most + size > 0;
+}
+
 // At t metres from its lamp, the beam is bounded by a ball around the point there, so each
 // condition is linear in t.
 bool FineBeams::is_fine_in(const Bundle& bundle, const Beam& beam, double width) const {
+    if (beam.fine.normal && !may_lie_in_sheet(bundle, *beam.fine.normal)) return false;
+    if (beam.is_wide) return true;
     const Vector3 to_apex = beam.apex - bundle.origin;
     // The point at t is at the distance z + t * dz from the camera, along the ray in the middle.
     const double z = glm::dot(bundle.direction, to_apex);
@@ -155,6 +179,7 @@ bool FineBeams::is_fine_in(const Bundle& bundle, const Beam& beam, double width)
              bundle.offsets[k] - glm::dot(outwards, from_origin(beam.apex)) + margin * z, part);
     }
     if (!(part.begin < part.end)) return false;
+    if (beam.fine.is_everywhere || beam.fine.normal) return true;
     const auto is_fine_at = [&](double t) {
         return 2 * beam.core_slope * t <
                width * bundle.pixel * glm::length(to_apex + t * beam.axis);

@@ -20,8 +20,9 @@ struct ImageRectangle {
     double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// Detects beams of lamps that are narrow in the image, such as a laser's line: they may lie
-/// between rays that are some pixels apart.
+/// Detects beams of lamps that are narrow in the image, such as a laser's: they may lie between
+/// rays that are some pixels apart. A pattern is so everywhere in its beam, a sheet of light where
+/// rays lie in its plane.
 class FineBeams {
   public:
     /// `rays` must outlive this object.
@@ -41,6 +42,8 @@ class FineBeams {
         Point3 apex;
         Vector3 axis;                    // unit
         double core_slope, outer_slope;  // tangents of the angles from the axis
+        bool is_wide;                    // the outer cone is too wide to be one in the image
+        FineStructure fine;
     };
     /// The pyramid of the rays of a rectangle.
     struct Bundle {
@@ -48,12 +51,14 @@ class FineBeams {
         Vector3 direction;                // of the ray in the middle
         std::array<Vector3, 4> outwards;  // normals of its sides
         std::array<double, 4> offsets;    // inside: dot(outwards, x) <= offset
+        std::array<Vector3, 4> corners;   // directions of the rays at its corners
         double pixel = 0;                 // width of a pixel, per metre of distance
     };
 
     static std::optional<Beam> beam_of(const Lamp& emitter);
     std::optional<Bundle> bundle(const ImageRectangle& area) const;
     bool is_fine_in(const Bundle& bundle, const Beam& beam, double width) const;
+    static bool may_lie_in_sheet(const Bundle& bundle, const Vector3& normal);
 
     const RaySource& rays_;
     std::vector<Beam> beams_;

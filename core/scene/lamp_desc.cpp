@@ -121,16 +121,49 @@ LampProfileDesc read_table_profile(ConfigMap& map, const SceneContext& /*context
     return profile;
 }
 
+double read_rotate(ConfigMap& map) {
+    const auto rotate = map.find("rotate");
+    return rotate ? rotate->within(-360, 360, "give the turn about the lamp's direction in degrees")
+                  : 0;
+}
+
 LampProfileDesc read_ies_profile(ConfigMap& map, const SceneContext& context) {
     IesProfileDesc profile;
     profile.where = map.value().location();
     profile.file = read_existing_file(map.require("file", "name the IES file (LM-63)"), context);
-    if (const auto rotate = map.find("rotate"))
-        profile.rotate =
-            rotate->within(-360, 360, "give the turn about the lamp's direction in degrees");
+    profile.rotate = read_rotate(map);
     if (const auto tilt = map.find("tilt"))
         profile.tilt = tilt->within(
             -180, 180, "give the angle between the lamp's direction and its axis in degrees");
+    return profile;
+}
+
+LampProfileDesc read_line(ConfigMap& map, const SceneContext& /*context*/) {
+    constexpr auto k_hint = "write {type: line, angle: 60, width: 0.2}, in degrees";
+    constexpr double k_widest_fan = 170, k_widest = 20;
+    LineProfileDesc profile;
+    profile.angle = map.require("angle", k_hint).positive(k_hint);
+    if (profile.angle > k_widest_fan)
+        map.require("angle", k_hint)
+            .fail(fmt::format("must be at most {:g}, found {:g}; give the full angle of the fan",
+                              k_widest_fan, profile.angle));
+    profile.width = map.require("width", k_hint).positive(k_hint);
+    if (profile.width > k_widest)
+        map.require("width", k_hint)
+            .fail(fmt::format("must be at most {:g}, found {:g}; give the full angle across the "
+                              "fan at half intensity",
+                              k_widest, profile.width));
+    profile.rotate = read_rotate(map);
+    return profile;
+}
+
+LampProfileDesc read_image_profile(ConfigMap& map, const SceneContext& context) {
+    constexpr auto k_hint = "give the full angle of the image's width in degrees";
+    ImageProfileDesc profile;
+    profile.where = map.value().location();
+    profile.file = read_existing_file(map.require("file", "name the image"), context);
+    profile.fov = map.require("fov", k_hint).between(0, 180, k_hint);
+    profile.rotate = read_rotate(map);
     return profile;
 }
 
@@ -141,13 +174,15 @@ LampProfileDesc read_profile(const ConfigValue& value, const SceneContext& conte
                                                           {"spot", read_spot},
                                                           {"cosine", read_cosine},
                                                           {"table", read_table_profile},
-                                                          {"ies", read_ies_profile}});
+                                                          {"ies", read_ies_profile},
+                                                          {"line", read_line},
+                                                          {"image", read_image_profile}});
     static_assert(k_types.size() == std::variant_size_v<LampProfileDesc>);
     constexpr auto k_example = "write {type: spot, beam: 60, edge: 5}";
-    ConfigMap map(
-        value,
-        {"type", "beam", "edge", "falloff", "fwhm", "angles", "values", "file", "rotate", "tilt"},
-        k_example);
+    ConfigMap map(value,
+                  {"type", "beam", "edge", "falloff", "fwhm", "angle", "width", "angles", "values",
+                   "file", "fov", "rotate", "tilt"},
+                  k_example);
     const ConfigValue type = map.require("type", k_example);
     LampProfileDesc profile = type.choice(k_types)(map, context);
     map.finish("profile type '" + type.node().scalar + "'");

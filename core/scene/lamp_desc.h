@@ -93,11 +93,31 @@ struct IesProfileDesc {
     SourceLocation where = "profile";
 };
 
+/// A line laser: a fan of light in the plane of the lamp's direction and LampPlacement::across.
+struct LineProfileDesc {
+    static constexpr bool k_is_absolute = false;
+
+    double angle = 0;   ///< full angle of the fan [degrees], 0 < angle <= 170
+    double width = 0;   ///< full angle across it at half intensity [degrees], 0 < width <= 20
+    double rotate = 0;  ///< rotation of its plane about the lamp's direction [degrees], -360..360
+};
+
+/// A pattern from an image: that of a projector, or of a mask in front of a lamp.
+struct ImageProfileDesc {
+    static constexpr bool k_is_absolute = false;
+
+    std::filesystem::path file;
+    double fov = 0;     ///< full angle of the image's width [degrees], 0 < fov < 180
+    double rotate = 0;  ///< rotation about the lamp's direction [degrees], -360..360
+    SourceLocation where = "profile";
+};
+
 /// How a lamp's radiant intensity depends on direction. core/light/lamp_profile.h constructs the
 /// profiles, core/scene/lamp_desc.h reads the descriptions; neither compiles unless it
 /// handles all of them.
-using LampProfileDesc = std::variant<IsotropicProfileDesc, SpotProfileDesc, CosineProfileDesc,
-                                     TableProfileDesc, IesProfileDesc>;
+using LampProfileDesc =
+    std::variant<IsotropicProfileDesc, SpotProfileDesc, CosineProfileDesc, TableProfileDesc,
+                 IesProfileDesc, LineProfileDesc, ImageProfileDesc>;
 
 /// The properties of a lamp that is a sun: its light is parallel, or comes from a disc in the sky,
 /// and enters the water through its surface.

@@ -154,6 +154,9 @@ void check(const CameraDesc& camera) {
 std::optional<double> beam_of(const LampProfileDesc& profile) {
     if (const auto* spot = std::get_if<SpotProfileDesc>(&profile)) return spot->beam;
     if (const auto* cosine = std::get_if<CosineProfileDesc>(&profile)) return cosine->fwhm;
+    if (const auto* line = std::get_if<LineProfileDesc>(&profile))
+        return std::min(line->angle, line->width);
+    if (const auto* image = std::get_if<ImageProfileDesc>(&profile)) return image->fov;
     return std::nullopt;
 }
 

@@ -264,6 +264,18 @@ struct ProfileJson {
                 {"rotate", profile.rotate},
                 {"tilt", profile.tilt}};
     }
+    Json operator()(const LineProfileDesc& profile) const {
+        return {{"type", "line"},
+                {"angle", profile.angle},
+                {"width", profile.width},
+                {"rotate", profile.rotate}};
+    }
+    Json operator()(const ImageProfileDesc& profile) const {
+        return {{"type", "image"},
+                {"file", profile.file.lexically_relative(folder).generic_string()},
+                {"fov", profile.fov},
+                {"rotate", profile.rotate}};
+    }
     std::filesystem::path folder;
 };
 

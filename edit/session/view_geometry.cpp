@@ -107,6 +107,7 @@ Point3 axis_point(const PlacedLamp& lamp) {
 std::optional<double> beam_half_angle(const LampProfileDesc& profile) {
     if (const auto* spot = std::get_if<SpotProfileDesc>(&profile)) return 0.5 * spot->beam;
     if (const auto* cosine = std::get_if<CosineProfileDesc>(&profile)) return 0.5 * cosine->fwhm;
+    if (const auto* image = std::get_if<ImageProfileDesc>(&profile)) return 0.5 * image->fov;
     if (const auto* table = std::get_if<TableProfileDesc>(&profile)) {
         const double half = 0.5 * std::ranges::max(table->values);
         std::size_t i = table->values.size() - 1;

@@ -90,6 +90,10 @@ std::string profile_key(const LampProfileDesc& profile) {
                                    fmt::join(desc.values, " "));
             else if constexpr (std::is_same_v<Desc, IesProfileDesc>)
                 return fmt::format("ies {} {} {}", desc.rotate, desc.tilt, desc.file.string());
+            else if constexpr (std::is_same_v<Desc, LineProfileDesc>)
+                return fmt::format("line {} {} {}", desc.angle, desc.width, desc.rotate);
+            else if constexpr (std::is_same_v<Desc, ImageProfileDesc>)
+                return fmt::format("image {} {} {}", desc.fov, desc.rotate, desc.file.string());
             else
                 return "isotropic";
         },

@@ -5,11 +5,16 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/base/parallel.h"
 #include "render/renderer.h"
 #include "render/scene_loading.h"
+#include "tests/support/image_file.h"
+#include "tests/support/temp_dir.h"
 
 namespace uw::test {
 namespace {
@@ -81,6 +86,34 @@ TEST_F(FineFeatures, ANarrowBeamFromTheCameraIsASpot) {
         expect_like_exact(
             scene("lamps:\n" + lamp(fmt::format("position: [0, 0, 0], direction: {}", direction),
                                     "type: spot, beam: 2, edge: 0.5")));
+}
+
+// Two sheets of light whose planes contain the camera, one that it is a centimetre beside, and one
+// that it sees from afar.
+TEST_F(FineFeatures, ASheetOfLightIsALineAlongItsPlane) {
+    for (const auto& [position, rotate] : {std::pair{"[0.4, 0.1, 0]", -14.036243},
+                                           {"[-0.3, 0.3, 0.1]", 45.0},
+                                           {"[0.4, 0.11, 0]", -14.036243},
+                                           {"[0.1, -0.5, 0]", 5.0}})
+        expect_like_exact(
+            scene("lamps:\n" +
+                  lamp(fmt::format("position: {}", position),
+                       fmt::format("type: line, angle: 50, width: 0.2, rotate: {}", rotate))));
+}
+
+// Dots, whose light is a bundle of lines of two pixels.
+TEST_F(FineFeatures, APatternIsEverywhereInItsBeam) {
+    const TempDir folder;
+    std::vector<int> dots(80 * 80, 0);
+    for (const std::size_t at : {17U * 80 + 31, 31U * 80 + 61, 66U * 80 + 12, 45U * 80 + 40})
+        dots[at] = 255;
+    std::ofstream(folder.path() / "dots.png", std::ios::binary)
+        << encoded_image("png", 80, 80, 1, dots);
+    const std::string file = (folder.path() / "dots.png").string();
+    for (const char* const position : {"[0.5, 0.2, 0]", "[0, 0.3, 0]"})
+        expect_like_exact(
+            scene("lamps:\n" + lamp(fmt::format("position: {}", position),
+                                    fmt::format("type: image, fov: 40, file: {}", file))));
 }
 
 // Behind a port, whose rays do not come from one point.

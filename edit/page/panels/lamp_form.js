@@ -21,10 +21,20 @@ const PROFILES = {
         label: "IES file", keys: ["rotate", "tilt"],
         start: (scene) => ({ file: scene.ies_files[0] }),
     },
+    line: {
+        label: "laser line", keys: ["angle", "width", "rotate"],
+        start: () => ({ angle: 60, width: 0.5 }),
+    },
+    image: { label: "image", keys: ["fov", "rotate"] },
 };
+
+/** What the scene has files for, or what the lamp is already. */
+const isOffered = (name, type, scene) => name === type ||
+    (name === "ies" ? scene.ies_files.length > 0 : name !== "image");
 
 const KEY_LABELS = {
     beam: "Beam", edge: "Edge", fwhm: "Full width at half", rotate: "Rotate", tilt: "Tilt",
+    angle: "Fan", width: "Width at half", fov: "Width of the image",
 };
 
 const EXTENT_STEPS = { radius: 0.01, width: 0.01, height: 0.01, rotate: 1, samples: 1 };
@@ -177,7 +187,7 @@ export class LampForm {
         const { type } = lamp.profile;
         const replace = set("profile", "profile");
         const options = Object.entries(PROFILES)
-            .filter(([name]) => name !== "ies" || scene.ies_files.length > 0 || type === "ies")
+            .filter(([name]) => isOffered(name, type, scene))
             .map(([value, { label }]) => ({ value, label }));
         const parts = [field(selectField({ label: "Type", key: "profile.type", options,
             commit: (chosen, refuse) =>

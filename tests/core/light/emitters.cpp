@@ -92,6 +92,7 @@ TEST(PointEmitter, ObeysTheLaws) {
     expect_emitter_laws(point(slanting_spot()), k_around);
     expect_emitter_laws(point(CosineProfile({60}, {})), k_around);
     expect_emitter_laws(point(TableProfile({{0, 60}, {1, 0}}, {})), k_around);
+    expect_emitter_laws(point(LineProfile({160, 20, 10}, {})), k_around);
     expect_emitter_laws(sphere(0.1), k_around);
     expect_emitter_laws(soft_spot(), k_around);
 }

@@ -60,6 +60,30 @@ TEST_F(LampReader, ReadsEachProfile) {
         read("[{position: [0, 0, 0], intensity: 1}]").at(0).profile));
 }
 
+TEST_F(LampReader, ReadsPatterns) {
+    const auto line = profile<LineProfileDesc>("{type: line, angle: 60, width: 0.2, rotate: -15}");
+    EXPECT_EQ(line.angle, 60);
+    EXPECT_EQ(line.width, 0.2);
+    EXPECT_EQ(line.rotate, -15);
+    for (const char* const wrong :
+         {"angle: 60", "width: 1", "angle: 171, width: 1", "angle: 60, width: 21",
+          "angle: 60, width: 0", "angle: 60, width: 1, rotate: 400", "angle: 60, width: 1, fov: 3"})
+        EXPECT_THROW(profile<LineProfileDesc>(std::string("{type: line, ") + wrong + "}"),
+                     InputError)
+            << wrong;
+    const std::filesystem::path file = folder_.write("pattern.png", "x");
+    const auto image = profile<ImageProfileDesc>("{type: image, file: pattern.png, fov: 40}");
+    EXPECT_EQ(image.file, file);
+    EXPECT_EQ(image.fov, 40);
+    EXPECT_EQ(image.rotate, 0);
+    EXPECT_NE(image.where.find("lamps[0].profile"), std::string::npos) << image.where;
+    for (const char* const wrong : {"fov: 40", "file: pattern.png", "file: none.png, fov: 40",
+                                    "file: pattern.png, fov: 180", "file: pattern.png, fov: 0"})
+        EXPECT_THROW(profile<ImageProfileDesc>(std::string("{type: image, ") + wrong + "}"),
+                     InputError)
+            << wrong;
+}
+
 TEST_F(LampReader, ReadsExtents) {
     EXPECT_FALSE(read("[{position: [0, 0, 0], intensity: 1, type: point}]").at(0).extent);
     const LampDesc panel = read(
