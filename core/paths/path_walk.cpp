@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/glass.h"
+#include "core/paths/glass_passage.h"
 #include "core/paths/irradiance_cache.h"
 
 namespace uw {
@@ -73,9 +74,6 @@ constexpr RandomWalkOptions k_walk_options;
 
 /// Reflection and refraction by the water's surface and glass.
 struct SpecularOptions {
-    /// The surfaces of glass that a path meets before it is back in the water: what is left after
-    /// that many reflections inside is next to nothing.
-    int max_in_glass = 64;
     /// Where no roulette ends a path, it meets this many specular surfaces in a row.
     int max_surfaces = 16;
 };
@@ -364,40 +362,12 @@ bool PathWalk::follow_specular(PathState& state, PathSegment& segment, Spectrum 
 
 std::optional<Ray> PathWalk::sample_specular(const WaterSegment& segment,
                                              const Spectrum& throughput, Spectrum& factor) {
-    if (!segment.hit.is_water_surface) return sample_glass(segment, throughput, factor);
+    if (!segment.hit.is_water_surface)
+        return sample_glass_passage(tables_.optics.scene(), segment.ray, segment.hit, throughput,
+                                    random_, factor);
     const double reflectance = water_surface_reflectance(segment);
     for (double& value : factor.first(tables_.optics.bands())) value *= reflectance;
     return mirrored_ray(segment);
-}
-
-// At each surface the path is reflected or refracted at random, in proportion to the light that
-// either brings, until it is back in the water. What lies in the glass itself ends it.
-std::optional<Ray> PathWalk::sample_glass(const WaterSegment& segment, const Spectrum& throughput,
-                                          Spectrum& factor) {
-    const LitScene& scene = tables_.optics.scene();
-    const std::size_t bands = tables_.optics.bands();
-    GlassRay ray{segment.ray, scene.glass->around(segment.ray.origin)};
-    SurfaceHit hit = segment.hit;
-    for (int i = 0; i < k_specular_options.max_in_glass; ++i) {
-        const GlassSplit split = scene.glass->split(ray, hit);
-        double reflected = 0, transmitted = 0;
-        for (std::size_t b = 0; b < bands; ++b) {
-            reflected += throughput[b] * factor[b] * split.reflectance[b];
-            transmitted += throughput[b] * factor[b] * split.transmittance[b];
-        }
-        const double total = reflected + transmitted;
-        if (!(total > 0)) return std::nullopt;
-        const bool is_reflected = random_.next() * total < reflected;
-        const Spectrum& fraction = is_reflected ? split.reflectance : split.transmittance;
-        const double probability = (is_reflected ? reflected : transmitted) / total;
-        for (std::size_t b = 0; b < bands; ++b) factor[b] *= fraction[b] / probability;
-        ray = is_reflected ? split.reflected : split.transmitted;
-        if (ray.around.glass() == 0) return ray.ray;
-        if (!scene.surfaces->closest_hit(ray.ray, k_far, hit) || hit.glass == 0)
-            return std::nullopt;
-        scene.glass->absorb(ray.around, hit.distance, factor);
-    }
-    return std::nullopt;
 }
 
 Ray PathWalk::mirrored_ray(const WaterSegment& segment) const {

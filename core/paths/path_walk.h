@@ -147,8 +147,6 @@ class PathWalk {
     // end, and multiplies `factor` by what is left of its light; nothing where it ends.
     std::optional<Ray> sample_specular(const WaterSegment& segment, const Spectrum& throughput,
                                        Spectrum& factor);
-    std::optional<Ray> sample_glass(const WaterSegment& segment, const Spectrum& throughput,
-                                    Spectrum& factor);
     Ray mirrored_ray(const WaterSegment& segment) const;
     double water_surface_reflectance(const WaterSegment& segment) const;
 
