@@ -135,8 +135,9 @@ TriangleMesh take_glass(TriangleMesh& mesh) {
                 to.triangle_objects.push_back(from.triangle_objects[t]);
         }
     };
-    if (std::ranges::none_of(mesh.materials,
-                             [](const MeshMaterial& material) { return material.glass.has_value(); }))
+    if (std::ranges::none_of(mesh.materials, [](const MeshMaterial& material) {
+            return material.glass.has_value();
+        }))
         return glass;
     glass = mesh;
     is_part_of(true, mesh, glass);
@@ -150,8 +151,7 @@ TriangleMesh take_glass(TriangleMesh& mesh) {
 void note_glass(const TriangleMesh& mesh, FileSurfaces& surfaces) {
     for (const MeshMaterial& material : mesh.materials) {
         if (!material.glass || material.number == 0) continue;
-        surfaces.glass.resize(
-            std::max(surfaces.glass.size(), std::size_t{material.number}));
+        surfaces.glass.resize(std::max(surfaces.glass.size(), std::size_t{material.number}));
         surfaces.glass[material.number - 1] = material.glass;
     }
 }
@@ -484,8 +484,7 @@ class Builder {
             const FileGlass& glass = *file.glass[i];
             glass_.materials.push_back({glass.n, glass.is_thin, glass.thickness,
                                         objects_.bands.from_rgb(glass.absorption)});
-            glass_.of_material.resize(
-                std::max(glass_.of_material.size(), before + i + 2));
+            glass_.of_material.resize(std::max(glass_.of_material.size(), before + i + 2));
             glass_.of_material[before + i + 1] =
                 static_cast<std::uint32_t>(glass_.materials.size());
         }
@@ -531,8 +530,8 @@ class Builder {
                                        SceneObjects& among) {
                     if (!object) return;
                     extend_bounds(desc, transformed(shared.bounds, map), among);
-                    among.instances.push_back({object.get(), MeshTransform(map),
-                                               before.objects + 1 + placement.object});
+                    among.instances.push_back(
+                        {object.get(), MeshTransform(map), before.objects + 1 + placement.object});
                 };
                 place(shared.object, objects);
                 place(shared.of_glass, of_glass_);
@@ -576,8 +575,8 @@ class Builder {
     void add_plane(const GeometryDesc& desc, std::uint32_t object_id) {
         if (desc.glass) glass_.has_planes = true;
         objects_for(desc).planes.push_back({desc.world_from_object * desc.point,
-                                   desc.world_from_object.apply_to_normal(desc.normal), object_id,
-                                   reflectance(desc)});
+                                            desc.world_from_object.apply_to_normal(desc.normal),
+                                            object_id, reflectance(desc)});
     }
 
     SceneObjects objects_, of_glass_;

@@ -28,7 +28,7 @@ struct IdsBefore {
 struct FileSurfaces {
     struct Shared {
         std::shared_ptr<const MeshObject> object, of_glass;  // null: it has no such triangles
-        Bounds bounds;  // in its own space
+        Bounds bounds;                                       // in its own space
         std::vector<SharedMesh::Placement> placements;
     };
     std::vector<std::string> objects, materials;  // MeshFile's

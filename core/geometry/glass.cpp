@@ -95,8 +95,7 @@ void GlassSurfaces::closest_hits(std::span<const Ray> rays, double s_end,
     glass_->closest_hits(rays, s_end, of_glass, found_glass);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         hits[i].glass = 0;
-        if (found_glass[i] == 0 ||
-            (found[i] != 0 && hits[i].distance <= of_glass[i].distance))
+        if (found_glass[i] == 0 || (found[i] != 0 && hits[i].distance <= of_glass[i].distance))
             continue;
         hits[i] = of_glass[i];
         mark(hits[i]);
@@ -131,8 +130,8 @@ void GlassSurfaces::add_to_texture(const SurfaceHit& hit, std::span<const double
 std::uint32_t GlassAround::glass() const {
     const Object* last = nullptr;
     for (std::size_t i = 0; i < count_; ++i)
-        if (last == nullptr || std::pair(objects_[i].object, objects_[i].glass) >
-                                   std::pair(last->object, last->glass))
+        if (last == nullptr ||
+            std::pair(objects_[i].object, objects_[i].glass) > std::pair(last->object, last->glass))
             last = &objects_[i];
     return last == nullptr ? 0 : last->glass;
 }
@@ -172,10 +171,9 @@ GlassOptics::GlassOptics(std::shared_ptr<const Surfaces> surfaces, double n_wate
         has_solid_ = has_solid_ || !material.is_thin;
         const auto absorption = material.absorption.first(bands_);
         if (!material.is_thin || material.thickness > 0)
-            is_coloured_ =
-                is_coloured_ || std::ranges::any_of(absorption, [&](double value) {
-                    return value != absorption.front();
-                });
+            is_coloured_ = is_coloured_ || std::ranges::any_of(absorption, [&](double value) {
+                               return value != absorption.front();
+                           });
     }
 }
 
@@ -203,7 +201,8 @@ GlassSplit GlassOptics::split(const GlassRay& ray, const SurfaceHit& hit) const 
     const double cosine = std::min(1.0, -glm::dot(normal, direction));
     GlassSplit split;
     Vector3 mirrored = direction + 2 * cosine * normal;
-    if (!(glm::dot(mirrored, flat) > 0)) mirrored = direction - 2 * glm::dot(direction, flat) * flat;
+    if (!(glm::dot(mirrored, flat) > 0))
+        mirrored = direction - 2 * glm::dot(direction, flat) * flat;
     split.reflected = {{beside(hit, flat), glm::normalize(mirrored)}, ray.around};
     split.transmitted = {{beside(hit, -flat), direction}, ray.around};
     const GlassMaterial& material = glass_->materials()[hit.glass - 1];
@@ -222,10 +221,10 @@ GlassSplit GlassOptics::split(const GlassRay& ray, const SurfaceHit& hit) const 
     if (split.transmitted.around.glass() != ray.around.glass()) {
         const double n_behind = index(split.transmitted.around);
         const std::optional<Vector3> refracted = refract(direction, -normal, n_before, n_behind);
-        transmittance =
-            refracted ? fresnel_transmittance(cosine, n_before, n_behind).mean() : 0;
+        transmittance = refracted ? fresnel_transmittance(cosine, n_before, n_behind).mean() : 0;
         // A bent shading normal must not turn it back.
-        if (refracted && glm::dot(*refracted, flat) < 0) split.transmitted.ray.direction = *refracted;
+        if (refracted && glm::dot(*refracted, flat) < 0)
+            split.transmitted.ray.direction = *refracted;
     }
     for (std::size_t b = 0; b < bands_; ++b) {
         split.reflectance[b] = 1 - transmittance;
@@ -318,18 +317,20 @@ double GlassOptics::transmittance(const Point3& from, const Point3& to, std::siz
     return light[band];
 }
 
-std::uint64_t GlassOptics::crossings(const Point3& from, const Point3& to) const {
+int GlassOptics::crossings(const Point3& from, const Point3& to) const {
     const Unfolded line = unfolded(from, to);
-    std::uint64_t number = 0;
+    int number = 0;
     const auto count = [&](const Point3& begin, const Point3& end) {
-        Ray ray{begin, glm::normalize(end - begin)};
-        SurfaceHit hit;
-        double rest = distance(begin, end);
-        for (int i = 0; i < k_max_crossings && rest > 0; ++i) {
-            if (!glass_->glass().closest_hit(ray, rest, hit)) return;
-            number = number * 31 + hit.object_id + 1;
-            ray.origin = beside(hit, -hit.geometric_normal);
-            rest = glm::dot(end - ray.origin, ray.direction);
+        const double length = distance(begin, end);
+        if (!(length > 0)) return;
+        const Vector3 direction = (end - begin) / length;
+        double at = 0;
+        for (int i = 0; i < k_max_crossings; ++i) {
+            const double next =
+                at + glass_->glass().hit_distance({begin + at * direction, direction});
+            if (!(next < length)) return;
+            ++number;
+            at = next + 10 * k_offset * length;
         }
     };
     count(line.from, line.middle.value_or(line.to));

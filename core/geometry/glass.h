@@ -156,9 +156,9 @@ class GlassOptics {
     /// attenuation is not its own.
     void absorb(const GlassAround& around, double distance, Spectrum& light) const;
 
-    /// The fraction of light that gets from one point to the other in a straight line: exact through
-    /// thin panes; through solid glass without refraction and without what is reflected inside. In
-    /// each band, or in `band`.
+    /// The fraction of light that gets from one point to the other in a straight line: exact
+    /// through thin panes; through solid glass without refraction and without what is reflected
+    /// inside. In each band, or in `band`.
     Spectrum transmittance(const Point3& from, const Point3& to) const;
     double transmittance(const Point3& from, const Point3& to, std::size_t band) const;
 
@@ -181,8 +181,8 @@ class GlassOptics {
              Spectrum& light) const;
     void dim_unfolded(const Point3& from, const Point3& to, std::size_t first, std::size_t last,
                       Spectrum& light) const;
-    // A number that differs where lines cross other surfaces.
-    std::uint64_t crossings(const Point3& from, const Point3& to) const;
+    // The number of surfaces of glass that a line crosses.
+    int crossings(const Point3& from, const Point3& to) const;
     // The two ends of the line below the surface, and the point where it is folded, if it is.
     struct Unfolded {
         Point3 from, to;
@@ -202,17 +202,17 @@ class GlassOptics {
 template <class Origin>
 void GlassOptics::append_edges(const Ray& ray, const Interval& interval, const Origin& origin,
                                std::vector<double>& s) const {
-    // Finer than this, shadows are softened by the pixels' own size.
-    constexpr int k_steps = 32, k_halvings = 20;
+    // A shadow narrower than a step may be missed; its edges are found to a thousandth of a step.
+    constexpr int k_steps = 8, k_halvings = 10;
     const auto crossed = [&](double at) {
         const Point3 x = ray.at(at);
         return crossings(origin(x), x);
     };
     double before = interval.begin;
-    std::uint64_t known = crossed(before);
+    int known = crossed(before);
     for (int i = 1; i <= k_steps; ++i) {
         const double at = interval.begin + interval.length() * i / k_steps;
-        const std::uint64_t here = crossed(at);
+        const int here = crossed(at);
         if (here != known) {
             double low = before, high = at;
             for (int k = 0; k < k_halvings; ++k) {

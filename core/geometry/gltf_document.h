@@ -31,8 +31,8 @@ nlohmann::json load_gltf_json(const std::filesystem::path& file);
 [[noreturn]] void fail_broken_gltf(const std::filesystem::path& file,
                                    const nlohmann::json::exception& error);
 
-/// Whether `transmission`, the KHR_materials_transmission of a material, makes it glass: most of the
-/// light that is not reflected passes.
+/// Whether `transmission`, the KHR_materials_transmission of a material, makes it glass: most of
+/// the light that is not reflected passes.
 inline bool is_gltf_glass(const nlohmann::json& transmission) {
     return transmission.value("transmissionFactor", 0.0) >= 0.5;
 }

@@ -203,8 +203,8 @@ class Inspection {
         } else if (transmission.value("transmissionFactor", 0.0) > 0) {
             ignored_.insert("transmission below 0.5");
         } else if (!use_.pbr && !use_.diffuse_meant &&
-            (surface.value("metallicFactor", 1.0) > 0 ||
-             surface.contains("metallicRoughnessTexture"))) {
+                   (surface.value("metallicFactor", 1.0) > 0 ||
+                    surface.contains("metallicRoughnessTexture"))) {
             ignored_.insert("metallic");
         }
         if (material.contains("occlusionTexture")) ignored_.insert("occlusion maps");
@@ -214,8 +214,7 @@ class Inspection {
     void inspect_glass(const Json& material, const Json& surface, const Json& transmission) {
         // Less is hardly seen.
         constexpr double k_smooth = 0.1;
-        if (surface.value("roughnessFactor", 1.0) > k_smooth)
-            ignored_.insert("roughness of glass");
+        if (surface.value("roughnessFactor", 1.0) > k_smooth) ignored_.insert("roughness of glass");
         if (transmission.contains("transmissionTexture"))
             ignored_.insert("textures of transmission");
         const Json& volume = document_.extension(material, "KHR_materials_volume");

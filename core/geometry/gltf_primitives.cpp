@@ -133,8 +133,7 @@ std::optional<FileGlass> GltfMaterials::read_glass(const Json& json, const Rgb& 
         glass.thickness = k_pane;
         glass.absorption = absorption_of(colour, k_pane);
     } else if (const double distance = volume.value("attenuationDistance", 0.0); distance > 0) {
-        glass.absorption =
-            absorption_of(color_of(volume, "attenuationColor", {1, 1, 1}), distance);
+        glass.absorption = absorption_of(color_of(volume, "attenuationColor", {1, 1, 1}), distance);
     }
     return glass;
 }

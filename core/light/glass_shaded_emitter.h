@@ -17,6 +17,8 @@ class GlassShadedEmitter final : public Emitter {
     GlassShadedEmitter(std::shared_ptr<const Emitter> original,
                        std::shared_ptr<const GlassOptics> glass, std::size_t band);
 
+    const std::shared_ptr<const Emitter>& original() const { return original_; }
+
     std::string_view profile_name() const override { return original_->profile_name(); }
     Point3 origin(const Point3& x) const override { return original_->origin(x); }
     double spread(double distance) const override { return original_->spread(distance); }
@@ -36,9 +38,7 @@ class GlassShadedEmitter final : public Emitter {
     void append_profile_breaks(const Ray& ray, const Interval& interval,
                                std::vector<double>& s) const override;
     LampPassage passage(const Ray& ray) const override { return original_->passage(ray); }
-    double squared_offset(const Ray& ray) const override {
-        return original_->squared_offset(ray);
-    }
+    double squared_offset(const Ray& ray) const override { return original_->squared_offset(ray); }
     Point3 origin_on_patch(const Point3& x, const UnitPoint& place) const override {
         return original_->origin_on_patch(x, place);
     }

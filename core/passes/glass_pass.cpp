@@ -102,10 +102,9 @@ void GlassLight::add(const RenderedPixel& pixel) const {
         for (const GlassLeg& leg : each.legs) add_lamps(leg, weight, result);
     for (const GlassLeg& leg : of_water->legs) add_water(leg, fraction, result);
     if (paths_ == 0) return;
-    PathRandom random(
-        PathRandom::seed_of(k_glass_seed, static_cast<std::uint64_t>(pixel.y) << 32U |
-                                              static_cast<std::uint64_t>(pixel.x)),
-        static_cast<std::uint32_t>(pixels_.first_sample()));
+    PathRandom random(PathRandom::seed_of(k_glass_seed, static_cast<std::uint64_t>(pixel.y) << 32U |
+                                                            static_cast<std::uint64_t>(pixel.x)),
+                      static_cast<std::uint32_t>(pixels_.first_sample()));
     for (const Sample& each : samples)
         for (const GlassLeg& leg : each.legs) add_paths(leg, weight, random, result);
 }

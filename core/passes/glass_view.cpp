@@ -73,8 +73,8 @@ void GlassView::follow(const Ray& ray, const SurfaceHit& hit, std::vector<GlassL
             divide(from.ray, at, weight, clear, from.depth);
         } else if (end.is_water_surface && leg.is_in_water) {
             const WaterSurface& surface = *scene_.water_surface;
-            const double reflectance = surface.reflectance_from_water(
-                -glm::dot(leg.ray.direction, end.geometric_normal));
+            const double reflectance =
+                surface.reflectance_from_water(-glm::dot(leg.ray.direction, end.geometric_normal));
             push({surface.reflected(leg.ray, {end.distance, -end.geometric_normal}), {}},
                  per_band(bands_, [&](std::size_t) { return reflectance; }), weight, clear,
                  from.depth);

@@ -16,10 +16,11 @@ struct GlassLeg {
     Ray ray;
     bool is_in_water = true;  ///< else in glass, or in the air that it encloses
     bool has_hit = false;
-    SurfaceHit hit;     ///< the surface at its end
-    Spectrum weight{};  ///< fraction of the light that arrives at its beginning that the camera gets
-    Spectrum clear{};   ///< the same without water
-    Spectrum left{};    ///< fraction of light that is left of what its end sends to its beginning
+    SurfaceHit hit;  ///< the surface at its end
+    Spectrum
+        weight{};      ///< fraction of the light that arrives at its beginning that the camera gets
+    Spectrum clear{};  ///< the same without water
+    Spectrum left{};   ///< fraction of light that is left of what its end sends to its beginning
 };
 
 /// Follows what a camera ray sees where it meets glass: a tree of refracted and reflected rays.

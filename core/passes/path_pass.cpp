@@ -350,8 +350,7 @@ void PathPixels::trace_behind_glass(const SurfaceSample& glass, const Batch& bat
             const WaterSurface& surface = *scene.water_surface;
             weight *= surface.reflectance_from_water(
                 -glm::dot(ray.ray.direction, sample.hit.geometric_normal));
-            ray = {surface.reflected(ray.ray,
-                                     {sample.hit.distance, -sample.hit.geometric_normal}),
+            ray = {surface.reflected(ray.ray, {sample.hit.distance, -sample.hit.geometric_normal}),
                    {}};
         }
         const double largest = weight.greatest(bands);
@@ -379,17 +378,16 @@ void PathPixels::trace_behind_glass(const SurfaceSample& glass, const Batch& bat
             sum.set_weight(weight * optics.radiance_in_water(ray.around));
             sum.set_part(&PixelResult::direct);
             Spectrum leaving;
-            if (sample.hit.glass == 0)
-                add_direct_light(scene, sample, light, 0, sum, leaving);
+            if (sample.hit.glass == 0) add_direct_light(scene, sample, light, 0, sum, leaving);
         }
         if (!is_specular(sample.hit)) break;
     }
     sum.reset_weight();
 }
 
-void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray,
-                            const SurfaceLight& light, std::size_t light_index, const Batch& batch,
-                            int index, Scratch& scratch, Sum& sum) const {
+void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                            std::size_t light_index, const Batch& batch, int index,
+                            Scratch& scratch, Sum& sum) const {
     CameraSegment& segment = scratch.segment;
     begin(surface, ray, light, light_index, segment, sum);
     segment.multiply_paths(path_counts_);

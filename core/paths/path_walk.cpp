@@ -490,8 +490,8 @@ double PathWalk::expected_in_mirror(const PathState& state, const Ray& mirrored,
                       std::max(options.ambient_of_direction * state.expected.ambient,
                                options.pixel_in_mirror * state.expected.pixel);
     SurfaceHit hit;
-    const Surfaces& surfaces = optics.scene().glass ? optics.scene().glass->surfaces().opaque()
-                                                    : *optics.scene().surfaces;
+    const Surfaces& surfaces =
+        optics.scene().glass ? optics.scene().glass->surfaces().opaque() : *optics.scene().surfaces;
     if (surfaces.closest_hit(mirrored, k_far, hit) && !hit.is_water_surface)
         radiance += std::exp(-optics.attenuation().uniform[optics.clearest_band()] * hit.distance) *
                     estimated_reflection(tables_.guides, hit, throughput, scratch_.column);

@@ -196,8 +196,9 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
         if (is_word && object.type == GeometryDesc::Type::file && !map.has("mesh")) return;
         const ConfigValue material = map.require("material", "");
         if (is_word)
-            material.fail("the only material of a shape or a mesh in memory is glass; write "
-                          "material: {type: glass, n: 1.5}, or remove it");
+            material.fail(
+                "the only material of a shape or a mesh in memory is glass; write "
+                "material: {type: glass, n: 1.5}, or remove it");
         object.glass = read_glass(material, context, object.type);
         if (object.reflectance)
             material.fail("glass has no reflectance of its own; remove one of the two");

@@ -190,8 +190,8 @@ class RadianceEstimate {
             if (sample.hit.glass != 0) {
                 PathRandom glass = stream(5);
                 Spectrum factor = segment_.transmittance;
-                const std::optional<Ray> next = sample_glass_passage(
-                    scene_.lit(), ray, sample.hit, throughput, glass, factor);
+                const std::optional<Ray> next =
+                    sample_glass_passage(scene_.lit(), ray, sample.hit, throughput, glass, factor);
                 if (!next) break;
                 throughput *= factor;
                 ray = *next;

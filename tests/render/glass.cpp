@@ -42,8 +42,7 @@ SceneDesc with(SceneDesc desc, GeometryDesc object) {
 }
 
 double pane_transmittance(double angle) {
-    const Polarised face =
-        fresnel_by_angles(std::max(angle, 1e-6), k_surface_water_index, k_index);
+    const Polarised face = fresnel_by_angles(std::max(angle, 1e-6), k_surface_water_index, k_index);
     return 0.5 * (face.s / (2 - face.s) + face.p / (2 - face.p));
 }
 
@@ -69,21 +68,22 @@ TEST(GlassImages, PaneBeforeALampDimsItByItsTransmittance) {
         const Vector3 direction = direction_of(desc, x, y);
         const Point3 on_wall = Point3{0, 0, 0} + k_glass_wall / direction.z * direction;
         const Vector3 from_lamp = glm::normalize(on_wall - lamp);
-        const double t = std::pow(pane_transmittance(std::acos(from_lamp.z)) *
-                                      pane_transmittance(std::acos(direction.z)),
-                                  2);
+        const double t = std::pow(
+            pane_transmittance(std::acos(from_lamp.z)) * pane_transmittance(std::acos(direction.z)),
+            2);
         for (int b = 0; b < 3; ++b) {
             // What is reflected between the panes and from the water in front adds little to direct
             // light: the wall seen once more, by two reflections of 0.4 %.
-            EXPECT_NEAR(dimmed.value(Layer::direct, x, y, b) /
-                            plain.value(Layer::direct, x, y, b) / t,
-                        1, 1e-4);
+            EXPECT_NEAR(
+                dimmed.value(Layer::direct, x, y, b) / plain.value(Layer::direct, x, y, b) / t, 1,
+                1e-4);
         }
     }
 }
 
 TEST(GlassImages, PaneOfTheWatersIndexIsInvisible) {
-    for (const auto integrator : {RenderDesc::Integrator::volume, RenderDesc::Integrator::reference}) {
+    for (const auto integrator :
+         {RenderDesc::Integrator::volume, RenderDesc::Integrator::reference}) {
         SceneDesc desc = scene_without_glass();
         desc.render.integrator = integrator;
         desc.render.samples = 4;
@@ -100,8 +100,8 @@ TEST(GlassImages, ColouredPaneFiltersALampByBand) {
     SceneDesc desc = scene_without_glass();
     desc.lamps[0].position = {0.3, 0.2, -1};
     const PerBand absorption{100, 10, 1};
-    const GeometryDesc pane =
-        pane_across(-0.5, {.n = k_surface_water_index, .thickness = 0.01, .absorption = absorption});
+    const GeometryDesc pane = pane_across(
+        -0.5, {.n = k_surface_water_index, .thickness = 0.01, .absorption = absorption});
     const RenderedFilm plain(desc), filtered(with(desc, pane));
     for (int b = 0; b < 3; ++b) {
         // The lamp's light at the middle of the wall passes the pane at 4.2 degrees at most.
@@ -163,8 +163,9 @@ TEST(GlassImages, FastFormOfMultipleScatteringAgreesWithPaths) {
 TEST(GlassImages, RefuseWhatKnowsNoGlass) {
     SceneDesc desc = scene_with_balls();
     desc.render.integrator = RenderDesc::Integrator::planes;
-    EXPECT_EQ(message_of<InputError>([&] { RenderedFilm{desc}; }),
-              "test.yaml: render.integrator: planes knows no glass; use volume, or remove the glass");
+    EXPECT_EQ(
+        message_of<InputError>([&] { RenderedFilm{desc}; }),
+        "test.yaml: render.integrator: planes knows no glass; use volume, or remove the glass");
     desc = scene_with_balls();
     desc.geometry[1].center = {0, 0, 0.1};
     EXPECT_EQ(message_of<InputError>([&] { RenderedFilm{desc}; }),

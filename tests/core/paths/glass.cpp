@@ -44,9 +44,8 @@ TEST(GlassPaths, KeepAWhiteFurnaceWhite) {
     Deviations deviations;
     std::uint64_t number = 0;
     // None of them meets glass itself, but what it meets is lit through all of it.
-    for (const Vector3& direction :
-         {Vector3(-0.9, 0.1, 0.1), Vector3(-0.4, 0.3, 1), Vector3(0.1, 0.6, -1),
-          Vector3(0.8, 0.7, 0.1)}) {
+    for (const Vector3& direction : {Vector3(-0.9, 0.1, 0.1), Vector3(-0.4, 0.3, 1),
+                                     Vector3(0.1, 0.6, -1), Vector3(0.8, 0.7, 0.1)}) {
         const Ray ray{{0, 0, 0}, glm::normalize(direction)};
         SurfaceHit hit;
         ASSERT_TRUE(scene.surfaces->closest_hit(ray, k_far, hit));
