@@ -11,8 +11,6 @@ namespace uw {
 
 namespace {
 
-constexpr double k_no_end = std::numeric_limits<double>::infinity();
-
 // Lines end at this many surfaces of glass: what gets through more of them is next to nothing.
 constexpr int k_max_crossings = 64;
 
@@ -184,8 +182,9 @@ GlassAround GlassOptics::around(const Point3& x) const {
         if (!(x[axis] >= bounds_.min[axis] && x[axis] <= bounds_.max[axis])) return around;
     // Along no axis and no diagonal, where edges of meshes lie.
     Ray ray{x, glm::normalize(Vector3(0.3771, 0.8129, 0.4437))};
+    const double out = 2 * bounds_.diagonal();
     SurfaceHit hit;
-    for (int i = 0; i < k_max_crossings && glass_->glass().closest_hit(ray, k_no_end, hit); ++i) {
+    for (int i = 0; i < k_max_crossings && glass_->glass().closest_hit(ray, out, hit); ++i) {
         const std::uint32_t glass = glass_->material_number(hit);
         if (!glass_->materials()[glass - 1].is_thin) around = around.across(hit.object_id, glass);
         ray.origin = beside(hit, -hit.geometric_normal);
