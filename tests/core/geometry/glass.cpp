@@ -34,7 +34,7 @@ GeometryDesc ball_of(const Point3& center, double radius, double n) {
     ball.type = GeometryDesc::Type::sphere;
     ball.center = center;
     ball.radius = radius;
-    ball.glass = GlassDesc{.n = n};
+    ball.glass = GlassDesc{.n = n, .absorption = {}};
     return ball;
 }
 
@@ -106,7 +106,7 @@ TEST(Glass, SlabOffsetsAndDimsAsInClosedForm) {
 
 // Both faces and all reflections between them: T = (1 - R)/(1 + R) for each polarisation.
 TEST(Glass, PaneTransmitsAndReflectsAsItsTwoFaces) {
-    const Scene clear = scene_of({pane_at(1, {.n = k_glass})});
+    const Scene clear = scene_of({pane_at(1, {.n = k_glass, .absorption = {}})});
     const Scene dark =
         scene_of({pane_at(1, {.n = k_glass, .thickness = 0.01, .absorption = {5, 50, 500}})});
     for (const double angle : {1e-4, 0.7, 1.2, 1.5}) {
