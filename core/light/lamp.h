@@ -46,8 +46,8 @@ class Lamp {
     Lamp met_by_paths() const;
     /// The same emitter in a scene with glass, which dims what it lights (GlassShadedEmitter).
     Lamp behind_glass(std::shared_ptr<const GlassOptics> glass) const;
-    /// The same in as many emitters as there are bands, one for the light of each, behind glass that
-    /// absorbs them differently.
+    /// The same in as many emitters as there are bands, one for the light of each, behind glass
+    /// that absorbs them differently.
     std::vector<Lamp> behind_coloured_glass(const std::shared_ptr<const GlassOptics>& glass,
                                             std::size_t bands) const;
     /// The same sun, focused by waves (FocusedEmitter): its light has the same irradiance on a
