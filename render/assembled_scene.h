@@ -22,6 +22,8 @@
 
 namespace uw {
 
+class GlassOptics;
+
 /// The deep shadow maps of the emitters of a scene, in their order.
 using DeepShadows = std::vector<std::shared_ptr<const DeepShadow>>;
 
@@ -42,6 +44,7 @@ struct AssembledScene {
     /// The surfaces for shadows, below calm water and a black sky, so that it is the same object
     /// while waves move and the sky changes.
     std::shared_ptr<const Surfaces> shadow_casters;
+    std::shared_ptr<const GlassOptics> glass;   // of the surfaces; null: none is of glass
     std::optional<Sky> sky;                     // above the water; none: black
     std::optional<WaterSurface> water_surface;  // reflects; none: the water is unbounded
     /// The field and its mirror image above the water surface, if there is one (SubmergedField).
@@ -68,7 +71,8 @@ struct AssembledScene {
                 &emitters,
                 lamp_surfaces.empty() ? nullptr : &lamp_surfaces,
                 emissions.empty() ? nullptr : &emissions,
-                water_surface ? &*water_surface : nullptr};
+                water_surface ? &*water_surface : nullptr,
+                glass.get()};
     }
 };
 

@@ -9,10 +9,13 @@
 
 #include "core/base/error.h"
 #include "core/base/troubleshooting.h"
+#include "core/geometry/glass.h"
+#include "core/geometry/surface_reflection.h"
 #include "core/light/integrator_table.h"
 #include "core/light/lamp_factory.h"
 #include "core/light/medium.h"
 #include "core/light/planes_integrator.h"
+#include "core/light/sky_emitter.h"
 #include "core/light/submerged.h"
 #include "core/passes/forward_images.h"
 #include "core/paths/path_tracer.h"
@@ -151,6 +154,59 @@ void submerge(const SceneDesc& desc, SceneCache& cache, AssembledScene& scene) {
     scene.field_with_image = parts.field_with_image;
 }
 
+// Sets what light does at the surfaces of glass, if there are any. Precondition: the scene has its
+// surfaces and its water surface.
+void set_glass(const SceneDesc& desc, const std::shared_ptr<const Surfaces>& surfaces,
+               AssembledScene& scene) {
+    scene.glass = nullptr;
+    if (!dynamic_cast<const GlassSurfaces*>(surfaces.get())) return;
+    scene.glass = std::make_shared<GlassOptics>(
+        surfaces, scene.water_surface ? scene.water_surface->n() : k_surface_water_index,
+        desc.water.bands_nm.size(), scene.water_surface);
+}
+
+// Refuses what does not know of glass. Precondition: the scene is complete.
+void check_glass(const SceneDesc& desc, AssembledScene& scene) {
+    if (!scene.glass) return;
+    const auto refuse = [&](const char* what, const char* mend) {
+        throw InputError(fmt::format("{}: {} {}", desc.file.filename().string(), what, mend));
+    };
+    if (integrator_kind(desc.render.integrator).sums_slabs)
+        refuse("render.integrator: planes knows no glass;", "use volume, or remove the glass");
+    if (desc.render.output == RenderDesc::Output::paper)
+        refuse("render.output: paper knows no glass;", "use another output, or remove the glass");
+    if (desc.water.forward_scatter.K > 0)
+        refuse("water.forward_scatter knows no glass;",
+               "write render.scattering: multiple instead, which has all scattering, or remove the "
+               "glass");
+    if (!scene.glass->around(at_origin_plus(scene.camera->world_from_camera().offset())).empty())
+        refuse("the camera is inside solid glass of the scene;",
+               "describe the glass in front of a camera by camera.port");
+    if (scene.sky)
+        scene.warnings.push_back(fmt::format(
+            "{}: the sky's light on surfaces and in the water passes glass as if there were none; "
+            "what is seen through glass is right",
+            desc.file.filename().string()));
+}
+
+// Dims the light of emitters by glass on its way. The sky's parts are no single lines.
+void shade_by_glass(AssembledScene& scene) {
+    if (!scene.glass) return;
+    std::vector<Lamp> emitters;
+    const auto bands = static_cast<std::size_t>(scene.water.medium.band_count());
+    for (const Lamp& emitter : scene.emitters) {
+        if (dynamic_cast<const SkyEmitter*>(&emitter.emitter())) {
+            emitters.push_back(emitter);
+        } else if (scene.glass->is_coloured()) {
+            for (const Lamp& of_band : emitter.behind_coloured_glass(scene.glass, bands))
+                emitters.push_back(of_band);
+        } else {
+            emitters.push_back(emitter.behind_glass(scene.glass));
+        }
+    }
+    scene.emitters = std::move(emitters);
+}
+
 // Returns the extent of the maps of caustics: a tile of the sea or, without one, a square around
 // the camera.
 SunFocus::Extent extent_of_focus(const SceneDesc& desc, const AssembledScene& scene) {
@@ -266,10 +322,13 @@ AssembledScene assemble_scene(const ImageScene& image, SceneCache& cache,
     scene.geometry_warnings = built.warnings;
     append(scene.warnings, scene.geometry_warnings);
     submerge(desc, cache, scene);
+    set_glass(desc, built.surfaces, scene);
     focus_suns(desc, cache, scene);
     scene.emissions = cache.emissions(desc, scene.warnings);
     place_lamps(desc, scene);
+    shade_by_glass(scene);
     check_below_surface(desc, scene);
+    check_glass(desc, scene);
     warn_of_lamps_at_the_camera(desc, scene);
     return scene;
 }
@@ -292,6 +351,7 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
     moved.shadow_casters = scene.shadow_casters;
     moved.water_surface = scene.water_surface;
     moved.sky = scene.sky;
+    moved.glass = scene.glass;
     moved.sun_foci = scene.sun_foci;
     moved.field_with_image = scene.field_with_image;
     if (desc.geometry != scene.desc().geometry) {
@@ -303,8 +363,10 @@ AssembledScene with_moved(const AssembledScene& scene, ImageScene then,
             moved.shadow_casters = std::make_shared<SubmergedSurfaces>(
                 below, WaterSurface(without_waves(*desc.water.surface)), SeenSky());
         }
+        set_glass(desc, below, moved);
     }
     place_lamps(desc, moved);
+    shade_by_glass(moved);
     moved.warnings.clear();
     if (scene.slabs) moved.slabs = place_slabs(moved);
     return moved;

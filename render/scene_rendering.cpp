@@ -9,6 +9,7 @@
 #include "core/base/troubleshooting.h"
 #include "core/light/integrator_table.h"
 #include "core/passes/forward_scatter_pass.h"
+#include "core/passes/glass_pass.h"
 #include "core/passes/multiple_scattering_pass.h"
 #include "core/passes/pixel_pass.h"
 #include "core/passes/sensor_pass.h"
@@ -43,6 +44,8 @@ PassList make_passes(const ImageScene& image, const PathRequest& paths, std::int
     const RenderDesc& render = scene.render;
     PassList passes;  // check_integrator refuses invalid combinations
     if (paths_at_nodes(render)) passes.add<MultipleScatteringPass>(paths.path_factor);
+    if (!integrator_kind(render.integrator).traces_paths)
+        passes.add<GlassPass>(paths_at_nodes(render));
     if (scene.water.snow) passes.add<SnowPass>(*scene.water.snow);
     if (integrator_kind(render.integrator).traces_paths)
         passes.add<PathPass>(render, paths);

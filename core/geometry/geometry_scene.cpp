@@ -11,6 +11,7 @@
 
 #include "core/base/error.h"
 #include "core/geometry/embree_surfaces.h"
+#include "core/geometry/glass.h"
 #include "core/geometry/mesh_reader.h"
 #include "core/geometry/scene_objects.h"
 #include "core/scene/scene_limits.h"
@@ -111,25 +112,87 @@ MeshFile mesh_file(const GeometryDesc& desc, std::vector<std::string>& warnings)
                       desc.is_material_given, desc.time});
 }
 
+/// Moves the triangles whose material is of glass to another mesh, which has copies of all
+/// vertices.
+TriangleMesh take_glass(TriangleMesh& mesh) {
+    const auto is_glass = [&](std::size_t triangle) {
+        const std::size_t material =
+            mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[triangle];
+        return mesh.materials[material].glass.has_value();
+    };
+    TriangleMesh glass;
+    const std::size_t count = mesh.triangle_count();
+    const auto is_part_of = [&](bool of_glass, const TriangleMesh& from, TriangleMesh& to) {
+        to.triangles.clear();
+        to.triangle_materials.clear();
+        to.triangle_objects.clear();
+        for (std::size_t t = 0; t < count; ++t) {
+            if (is_glass(t) != of_glass) continue;
+            for (std::size_t k = 0; k < 3; ++k) to.triangles.push_back(from.triangles[3 * t + k]);
+            if (!from.triangle_materials.empty())
+                to.triangle_materials.push_back(from.triangle_materials[t]);
+            if (!from.triangle_objects.empty())
+                to.triangle_objects.push_back(from.triangle_objects[t]);
+        }
+    };
+    if (std::ranges::none_of(mesh.materials, [](const MeshMaterial& material) {
+            return material.glass.has_value();
+        }))
+        return glass;
+    glass = mesh;
+    is_part_of(true, mesh, glass);
+    TriangleMesh opaque = mesh;
+    is_part_of(false, mesh, opaque);
+    mesh = std::move(opaque);
+    return glass;
+}
+
+/// The glass of a file's materials, by their numbers.
+void note_glass(const TriangleMesh& mesh, FileSurfaces& surfaces) {
+    for (const MeshMaterial& material : mesh.materials) {
+        if (!material.glass || material.number == 0) continue;
+        surfaces.glass.resize(std::max(surfaces.glass.size(), std::size_t{material.number}));
+        surfaces.glass[material.number - 1] = material.glass;
+    }
+}
+
 std::shared_ptr<const FileSurfaces> surfaces_of(MeshFile file, const GeometryDesc& desc,
                                                 const IdsBefore& before,
                                                 const std::optional<Spectrum>& reflectance) {
     auto surfaces = std::make_shared<FileSurfaces>();
+    // An entry that is of glass as a whole is not divided.
+    const auto glass_of = [&](TriangleMesh& mesh) {
+        note_glass(mesh, *surfaces);
+        return desc.glass ? TriangleMesh() : take_glass(mesh);
+    };
     surfaces->objects = std::move(file.objects);
     surfaces->materials = std::move(file.materials);
     if (!file.mesh.triangles.empty()) {
         place_mesh(file.mesh, desc.world_from_object);
         surfaces->bounds = bounds_of(file.mesh);
-        const auto object = make_mesh_object(desc, std::move(file.mesh), reflectance);
-        object->object_id = before.objects + 1;
-        object->materials_end = before.materials;
-        surfaces->mesh = object;
+        TriangleMesh glass = glass_of(file.mesh);
+        const auto make = [&](TriangleMesh mesh) -> std::shared_ptr<const MeshObject> {
+            if (mesh.triangles.empty()) return nullptr;
+            const auto object = make_mesh_object(desc, std::move(mesh), reflectance);
+            object->object_id = before.objects + 1;
+            object->materials_end = before.materials;
+            return object;
+        };
+        surfaces->mesh = make(std::move(file.mesh));
+        surfaces->of_glass = make(std::move(glass));
     }
     for (SharedMesh& shared : file.shared) {
         const Bounds bounds = bounds_of(shared.mesh);
-        const auto object = make_mesh_object(desc, std::move(shared.mesh), reflectance);
-        object->materials_end = before.materials;
-        surfaces->shared.push_back({object, bounds, std::move(shared.placements)});
+        TriangleMesh glass = glass_of(shared.mesh);
+        const auto make = [&](TriangleMesh mesh) -> std::shared_ptr<const MeshObject> {
+            if (mesh.triangles.empty()) return nullptr;
+            const auto object = make_mesh_object(desc, std::move(mesh), reflectance);
+            object->materials_end = before.materials;
+            return object;
+        };
+        auto opaque = make(std::move(shared.mesh));
+        surfaces->shared.push_back(
+            {std::move(opaque), make(std::move(glass)), bounds, std::move(shared.placements)});
     }
     return surfaces;
 }
@@ -352,7 +415,9 @@ void refuse_overlap(const SceneObjects& objects, const std::vector<GeometryDesc>
 class Builder {
   public:
     Builder(const std::vector<double>& wavelengths_nm, MeshStore& meshes)
-        : objects_{{}, {}, {}, {}, {}, {}, ReflectanceBands(wavelengths_nm), {}}, meshes_(meshes) {}
+        : objects_{{}, {}, {}, {}, {}, {}, ReflectanceBands(wavelengths_nm), {}},
+          of_glass_{{}, {}, {}, {}, {}, {}, ReflectanceBands(wavelengths_nm), {}},
+          meshes_(meshes) {}
 
     /// The next entry of `geometry`.
     void add(const GeometryDesc& desc, std::vector<std::string>& warnings) {
@@ -363,6 +428,7 @@ class Builder {
                             "other than 0",
                             desc.where));
         }
+        const std::size_t first = objects_.names.objects.size() + 1;
         switch (desc.type) {
             case GeometryDesc::Type::file:
                 add_file(desc, warnings);
@@ -378,13 +444,50 @@ class Builder {
                 break;
         }
         ++entry_;
+        if (!desc.glass) return;
+        glass_.materials.push_back(material_of(*desc.glass));
+        glass_.of_object.resize(objects_.names.objects.size() + 1);
+        std::fill(glass_.of_object.begin() + static_cast<std::ptrdiff_t>(first),
+                  glass_.of_object.end(), static_cast<std::uint32_t>(glass_.materials.size()));
     }
 
+    bool has_glass() const { return !glass_.materials.empty(); }
+    const SceneObjects& objects() const { return objects_; }
     SceneObjects take() { return std::move(objects_); }
+    /// Those of glass.
+    SceneObjects take_of_glass() {
+        of_glass_.names = objects_.names;
+        return std::move(of_glass_);
+    }
+    GlassTable take_glass_table() { return std::move(glass_); }
 
   private:
     Spectrum reflectance(const GeometryDesc& desc) const {
         return reflectance_or_default(desc, objects_.bands.count());
+    }
+
+    /// Where the surfaces of an entry are put.
+    SceneObjects& objects_for(const GeometryDesc& desc) {
+        return desc.glass ? of_glass_ : objects_;
+    }
+
+    static GlassMaterial material_of(const GlassDesc& desc) {
+        GlassMaterial material{desc.n, desc.is_thin, desc.thickness, {}};
+        std::ranges::copy(desc.absorption, material.absorption.begin());
+        return material;
+    }
+
+    /// Adds the materials of glass of a file, whose materials are numbered after `before`.
+    void add_glass(const FileSurfaces& file, std::uint32_t before) {
+        for (std::size_t i = 0; i < file.glass.size(); ++i) {
+            if (!file.glass[i]) continue;
+            const FileGlass& glass = *file.glass[i];
+            glass_.materials.push_back({glass.n, glass.is_thin, glass.thickness,
+                                        objects_.bands.from_rgb(glass.absorption)});
+            glass_.of_material.resize(std::max(glass_.of_material.size(), before + i + 2));
+            glass_.of_material[before + i + 1] =
+                static_cast<std::uint32_t>(glass_.materials.size());
+        }
     }
 
     /// Returns the object's id.
@@ -410,38 +513,52 @@ class Builder {
         for (const std::string& name : file->objects) name_object(desc, name);
         for (const std::string& name : file->materials)
             objects_.names.materials.push_back({name, entry_});
+        SceneObjects& objects = objects_for(desc);
+        if (!desc.glass) add_glass(*file, before.materials);
         if (file->mesh) {
-            extend_bounds(desc, file->bounds);
-            objects_.meshes.push_back(file->mesh);
+            extend_bounds(desc, file->bounds, objects);
+            objects.meshes.push_back(file->mesh);
+        }
+        if (file->of_glass) {
+            extend_bounds(desc, file->bounds, of_glass_);
+            of_glass_.meshes.push_back(file->of_glass);
         }
         for (const FileSurfaces::Shared& shared : file->shared) {
             for (const SharedMesh::Placement& placement : shared.placements) {
                 const Affine map = desc.world_from_object * placement.file_from_mesh;
-                extend_bounds(desc, transformed(shared.bounds, map));
-                objects_.instances.push_back({shared.object.get(), MeshTransform(map),
-                                              before.objects + 1 + placement.object});
+                const auto place = [&](const std::shared_ptr<const MeshObject>& object,
+                                       SceneObjects& among) {
+                    if (!object) return;
+                    extend_bounds(desc, transformed(shared.bounds, map), among);
+                    among.instances.push_back(
+                        {object.get(), MeshTransform(map), before.objects + 1 + placement.object});
+                };
+                place(shared.object, objects);
+                place(shared.of_glass, of_glass_);
             }
-            objects_.shared_meshes.push_back(shared.object);
+            if (shared.object) objects.shared_meshes.push_back(shared.object);
+            if (shared.of_glass) of_glass_.shared_meshes.push_back(shared.of_glass);
         }
     }
 
-    void extend_bounds(const GeometryDesc& desc, const Bounds& bounds) {
+    static void extend_bounds(const GeometryDesc& desc, const Bounds& bounds,
+                              SceneObjects& objects) {
         for (int axis = 0; axis < 3; ++axis) {
             if (!(bounds.min[axis] >= -k_max_coordinate && bounds.max[axis] <= k_max_coordinate)) {
                 throw InputError(fmt::format("{}: extends beyond {:g} m; check its transform",
                                              desc.where, k_max_coordinate));
             }
         }
-        objects_.bounds.extend(bounds);
+        objects.bounds.extend(bounds);
     }
 
     void add_box(const GeometryDesc& desc, std::uint32_t object_id) {
         TriangleMesh mesh = box_mesh(desc);
         place_mesh(mesh, desc.world_from_object);
-        extend_bounds(desc, bounds_of(mesh));
+        extend_bounds(desc, bounds_of(mesh), objects_for(desc));
         const auto object = make_mesh_object(desc, std::move(mesh), reflectance(desc));
         object->object_id = object_id;
-        objects_.meshes.push_back(object);
+        objects_for(desc).meshes.push_back(object);
     }
 
     void add_sphere(const GeometryDesc& desc, std::uint32_t object_id) {
@@ -451,17 +568,19 @@ class Builder {
                                   desc.radius,
                                   object_id,
                                   reflectance(desc)};
-        extend_bounds(desc, sphere.world_bounds());
-        objects_.spheres.push_back(sphere);
+        extend_bounds(desc, sphere.world_bounds(), objects_for(desc));
+        objects_for(desc).spheres.push_back(sphere);
     }
 
     void add_plane(const GeometryDesc& desc, std::uint32_t object_id) {
-        objects_.planes.push_back({desc.world_from_object * desc.point,
-                                   desc.world_from_object.apply_to_normal(desc.normal), object_id,
-                                   reflectance(desc)});
+        if (desc.glass) glass_.has_planes = true;
+        objects_for(desc).planes.push_back({desc.world_from_object * desc.point,
+                                            desc.world_from_object.apply_to_normal(desc.normal),
+                                            object_id, reflectance(desc)});
     }
 
-    SceneObjects objects_;
+    SceneObjects objects_, of_glass_;
+    GlassTable glass_;
     MeshStore& meshes_;
     std::size_t entry_ = 0;  // of `geometry`
 };
@@ -474,9 +593,13 @@ std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geomet
     meshes.keep_only(geometry);
     Builder builder(wavelengths_nm, meshes);
     for (const GeometryDesc& desc : geometry) builder.add(desc, warnings);
-    SceneObjects objects = builder.take();
-    refuse_overlap(objects, geometry);
-    return make_embree_surfaces(std::move(objects));
+    refuse_overlap(builder.objects(), geometry);
+    if (!builder.has_glass()) return make_embree_surfaces(builder.take());
+    SceneObjects of_glass = builder.take_of_glass();
+    refuse_overlap(of_glass, geometry);
+    return std::make_unique<GlassSurfaces>(make_embree_surfaces(builder.take()),
+                                           make_embree_surfaces(std::move(of_glass)),
+                                           builder.take_glass_table());
 }
 
 std::unique_ptr<Surfaces> build_surfaces(const std::vector<GeometryDesc>& geometry,

@@ -27,13 +27,15 @@ struct IdsBefore {
 /// What a mesh file adds to the surfaces of a scene. Never changed once it is made.
 struct FileSurfaces {
     struct Shared {
-        std::shared_ptr<const MeshObject> object;
-        Bounds bounds;  // in its own space
+        std::shared_ptr<const MeshObject> object, of_glass;  // null: it has no such triangles
+        Bounds bounds;                                       // in its own space
         std::vector<SharedMesh::Placement> placements;
     };
     std::vector<std::string> objects, materials;  // MeshFile's
     std::shared_ptr<const MeshObject> mesh;       // all meshes used once; null: none
-    Bounds bounds;                                // of `mesh`
+    std::shared_ptr<const MeshObject> of_glass;   // likewise, of glass
+    std::vector<std::optional<FileGlass>> glass;  // by material; none: it is opaque
+    Bounds bounds;                                // of both
     std::vector<Shared> shared;
 };
 
@@ -87,8 +89,9 @@ std::optional<TriangleOverlap> find_overlap(const SceneObjects& objects);
 /// RGB colours in files are converted to bands by ReflectanceBands. A given `reflectance` replaces
 /// a file's colours. Meshes that several objects of a file show are kept once (MeshFile::shared).
 ///
-/// Every surface is opaque and diffuse on both sides: a single-sided glTF face is shaded from
-/// behind as well, since light does not pass through it either.
+/// Every surface that is not of glass is opaque and diffuse on both sides: a single-sided glTF face
+/// is shaded from behind as well, since light does not pass through it either. If any surface is of
+/// glass, the result is a GlassSurfaces.
 ///
 /// Appends the warnings of read_mesh to `warnings`. Throws InputError for invalid files, a singular
 /// transform, or reflectances with a different band count; IoError; std::runtime_error if Embree

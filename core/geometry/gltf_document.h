@@ -31,6 +31,12 @@ nlohmann::json load_gltf_json(const std::filesystem::path& file);
 [[noreturn]] void fail_broken_gltf(const std::filesystem::path& file,
                                    const nlohmann::json::exception& error);
 
+/// Whether `transmission`, the KHR_materials_transmission of a material, makes it glass: most of
+/// the light that is not reflected passes.
+inline bool is_gltf_glass(const nlohmann::json& transmission) {
+    return transmission.value("transmissionFactor", 0.0) >= 0.5;
+}
+
 /// A glTF file's JSON description, with accessors that do not trust it. Includes nlohmann-json, so
 /// this header is for gltf_*.cpp and their headers only. Errors throw an InputError that names the
 /// file; values of the wrong type throw nlohmann's exceptions.

@@ -58,6 +58,8 @@ class Inspection {
             if (extension == "KHR_materials_ior") {
                 if (!use_.pbr) ignored_.insert(extension);
             } else if (extension != "KHR_lights_punctual" && extension != "KHR_texture_transform" &&
+                       extension != "KHR_materials_transmission" &&
+                       extension != "KHR_materials_volume" &&
                        extension != "KHR_materials_emissive_strength") {
                 ignored_.insert(extension);
             }
@@ -195,13 +197,33 @@ class Inspection {
 
     void inspect_material(const Json& material) {
         const Json& surface = document_.object(material, "pbrMetallicRoughness");
-        if (!use_.pbr && !use_.diffuse_meant &&
-            (surface.value("metallicFactor", 1.0) > 0 ||
-             surface.contains("metallicRoughnessTexture"))) {
+        const Json& transmission = document_.extension(material, "KHR_materials_transmission");
+        if (is_gltf_glass(transmission)) {
+            inspect_glass(material, surface, transmission);
+        } else if (transmission.value("transmissionFactor", 0.0) > 0) {
+            ignored_.insert("transmission below 0.5");
+        } else if (!use_.pbr && !use_.diffuse_meant &&
+                   (surface.value("metallicFactor", 1.0) > 0 ||
+                    surface.contains("metallicRoughnessTexture"))) {
             ignored_.insert("metallic");
         }
         if (material.contains("occlusionTexture")) ignored_.insert("occlusion maps");
         if (material.value("alphaMode", "OPAQUE") == "BLEND") ignored_.insert("alpha blending");
+    }
+
+    void inspect_glass(const Json& material, const Json& surface, const Json& transmission) {
+        // Less is hardly seen.
+        constexpr double k_smooth = 0.1;
+        if (surface.value("roughnessFactor", 1.0) > k_smooth) ignored_.insert("roughness of glass");
+        if (transmission.contains("transmissionTexture"))
+            ignored_.insert("textures of transmission");
+        const Json& volume = document_.extension(material, "KHR_materials_volume");
+        const bool is_solid = volume.value("thicknessFactor", 0.0) > 0;
+        if (is_solid && surface.contains("baseColorFactor") &&
+            surface["baseColorFactor"] != Json{1, 1, 1, 1} &&
+            surface["baseColorFactor"] != Json{1.0, 1.0, 1.0, 1.0})
+            ignored_.insert("the base colour of solid glass (its attenuationColor is used)");
+        if (surface.contains("baseColorTexture")) ignored_.insert("textures of glass");
     }
 
     const GltfDocument& document_;

@@ -108,6 +108,36 @@ TextureUse GltfMaterials::read_texture(const Json& parent, const char* key,
     return use;
 }
 
+// Transparent by KHR_materials_transmission: a pane without KHR_materials_volume, else solid. The
+// base colour is that of light which has passed a pane once.
+std::optional<FileGlass> GltfMaterials::read_glass(const Json& json, const Rgb& colour) const {
+    const Json& transmission = document_.extension(json, "KHR_materials_transmission");
+    if (!is_gltf_glass(transmission)) return std::nullopt;
+    // Any length does; the absorption of a pane is that of its thickness.
+    constexpr double k_pane = 1e-3;
+    constexpr double k_least_fraction = 1e-6;
+    const auto absorption_of = [&](const Rgb& left, double distance) {
+        Rgb absorption;
+        for (std::size_t k = 0; k < 3; ++k)
+            absorption[k] =
+                -std::log(std::clamp(static_cast<double>(left[k]), k_least_fraction, 1.0)) /
+                distance;
+        return absorption;
+    };
+    FileGlass glass;
+    glass.n = document_.extension(json, "KHR_materials_ior").value("ior", 1.5);
+    if (!(glass.n >= 1)) document_.fail("a glTF material has a refractive index below 1");
+    const Json& volume = document_.extension(json, "KHR_materials_volume");
+    glass.is_thin = !(volume.value("thicknessFactor", 0.0) > 0);
+    if (glass.is_thin) {
+        glass.thickness = k_pane;
+        glass.absorption = absorption_of(colour, k_pane);
+    } else if (const double distance = volume.value("attenuationDistance", 0.0); distance > 0) {
+        glass.absorption = absorption_of(color_of(volume, "attenuationColor", {1, 1, 1}), distance);
+    }
+    return glass;
+}
+
 MeshMaterial GltfMaterials::read(std::size_t index) {
     const Json& json = document_.list("materials")[index];
     const Json& surface = document_.object(json, "pbrMetallicRoughness");
@@ -133,6 +163,7 @@ MeshMaterial GltfMaterials::read(std::size_t index) {
 
     material.normal_map = read_texture(json, "normalTexture", TextureEncoding::linear);
     material.normal_scale = document_.object(json, "normalTexture").value("scale", 1.0);
+    material.glass = read_glass(json, material.base_color);
     if (!use_.pbr) return material;
     material.metallic = fraction_of(surface, "metallicFactor", 1);
     material.roughness = fraction_of(surface, "roughnessFactor", 1);

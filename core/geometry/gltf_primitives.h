@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -25,6 +26,7 @@ class GltfMaterials {
     MeshMaterial read(std::size_t index);
 
   private:
+    std::optional<FileGlass> read_glass(const nlohmann::json& material, const Rgb& colour) const;
     TextureUse read_texture(const nlohmann::json& parent, const char* key, TextureEncoding encoding,
                             bool keep_alpha = false);
     std::shared_ptr<const Texture> picture(std::size_t image, TextureEncoding encoding,

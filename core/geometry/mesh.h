@@ -11,6 +11,7 @@
 
 #include "core/base/spectrum.h"
 #include "core/base/vector_math.h"
+#include "core/geometry/glass_material.h"
 #include "core/geometry/texture.h"
 
 namespace uw {
@@ -51,6 +52,7 @@ struct MeshMaterial {
     double metallic = 0, roughness = 1;  // 0..1
     TextureUse metallic_roughness_map;   // linear; green roughness, blue metallic
     double ior = 1.5;                    // of the dielectric; 0: reflects everything
+    std::optional<FileGlass> glass;      // it is transparent
     std::uint32_t number = 0;            // in MeshFile::materials, from 1; 0: none of the file's
 };
 

@@ -48,13 +48,22 @@ struct SurfaceHit {
     std::uint32_t material_id = 0;      // likewise; 0: none of a file's
     bool has_material = false;          // more than diffuse reflection: see Surfaces::material
     bool is_water_surface = false;      // viewed from below (core/light/submerged.h)
+    /// The number of its glass in GlassSurfaces, from 1; 0: it is not of glass.
+    std::uint32_t glass = 0;
     // For Surfaces::material: the triangle and the position on it.
     std::uint32_t geometry = 0, triangle = 0;
     double u = 0, v = 0;
     SurfaceSpread spread{};  // over which its textures were taken
 };
 
-/// The opaque surfaces of a scene, which stop camera rays and cast shadows. Thread safe.
+/// Whether a ray goes on from a hit in directions that follow from its own: at the water's surface
+/// and at glass, which reflect and emit no light of their own as matt surfaces do.
+inline bool is_specular(const SurfaceHit& hit) {
+    return hit.is_water_surface || hit.glass != 0;
+}
+
+/// The surfaces of a scene, which stop camera rays and cast shadows. Those of glass (GlassSurfaces)
+/// are hit, but cast none. Thread safe.
 class Surfaces {
   public:
     virtual ~Surfaces() = default;
@@ -69,12 +78,12 @@ class Surfaces {
     /// Whether any surface may emit light; true where that is not known.
     virtual bool may_emit() const { return true; }
 
-    /// Distance to the nearest surface from the ray's origin, infinity if there is none. Cheaper
-    /// than closest_hit: no shading.
+    /// Distance to the nearest opaque surface from the ray's origin, infinity if there is none.
+    /// Cheaper than closest_hit: no shading.
     virtual double hit_distance(const Ray& ray) const = 0;
 
-    /// Whether a surface lies between `from` and `to`. Surfaces on which either point lies (within
-    /// 1e-5 of the distance) are ignored.
+    /// Whether an opaque surface lies between `from` and `to`. Surfaces on which either point lies
+    /// (within 1e-5 of the distance) are ignored.
     virtual bool occluded(const Point3& from, const Point3& to) const = 0;
 
     /// The three queries above for many rays at once, with bit-identical results (except for

@@ -56,12 +56,13 @@ class Emitter {
     /// Parallel light has 0 above the water, where `v` points against it.
     virtual double relative_intensity(const Vector3& v) const = 0;
 
-    /// The factor by which waves focus its light at `x` (SunFocus); 1 if they do not.
+    /// The factor by which waves focus its light at `x` (SunFocus), and by which glass on the way
+    /// dims it (GlassShadedEmitter); 1 if nothing does.
     virtual double focus(const Point3& /*x*/) const { return 1; }
     /// Multiplies each of `values` by that factor at its distance `s` along a ray.
     virtual void focus(const Ray& /*ray*/, std::span<const double> /*s*/,
                        std::span<double> /*values*/) const {}
-    /// Whether that factor may differ from 1.
+    /// Whether waves focus its light.
     virtual bool is_focused() const { return false; }
 
     /// Whether a relative intensity of 1 at a point implies 1 everywhere around it, up to the next

@@ -15,6 +15,7 @@ namespace uw {
 
 struct LampSurface;
 struct SceneEmission;
+class GlassOptics;
 class WaterSurface;
 
 /// Everything that integrators operate on; all of it must outlive them.
@@ -32,6 +33,9 @@ struct LitScene {
 
     /// The water's surface, at which light is reflected; null: the water is infinite.
     const WaterSurface* water_surface = nullptr;
+
+    /// What light does at the surfaces of glass; null: there are none.
+    const GlassOptics* glass = nullptr;
 
     /// How many lamps the scene has.
     std::size_t lamp_count() const { return emitters->empty() ? 0 : emitters->back().index() + 1; }

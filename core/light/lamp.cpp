@@ -4,6 +4,7 @@
 
 #include "core/light/directional_emitter.h"
 #include "core/light/focused_emitter.h"
+#include "core/light/glass_shaded_emitter.h"
 #include "core/light/mirrored_emitter.h"
 #include "core/light/point_emitter.h"
 
@@ -47,6 +48,24 @@ Lamp Lamp::met_by_paths() const {
     Lamp lamp = *this;
     lamp.is_met_by_paths_ = true;
     return lamp;
+}
+
+Lamp Lamp::behind_glass(std::shared_ptr<const GlassOptics> glass) const {
+    Lamp lamp = *this;
+    lamp.emitter_ = std::make_shared<GlassShadedEmitter>(emitter_, std::move(glass), 0);
+    return lamp;
+}
+
+std::vector<Lamp> Lamp::behind_coloured_glass(const std::shared_ptr<const GlassOptics>& glass,
+                                              std::size_t bands) const {
+    std::vector<Lamp> lamps(bands, *this);
+    for (std::size_t b = 0; b < bands; ++b) {
+        lamps[b].emitter_ = std::make_shared<GlassShadedEmitter>(emitter_, glass, b);
+        lamps[b].axis_intensity_ = {};
+        lamps[b].axis_intensity_[b] = axis_intensity_[b];
+        lamps[b].fraction_ /= static_cast<double>(bands);
+    }
+    return lamps;
 }
 
 Lamp Lamp::focused(std::shared_ptr<const SunFocus> focus) const {

@@ -16,6 +16,7 @@
 
 namespace uw {
 
+class GlassOptics;
 class SunFocus;
 
 /// An emitter in a scene, and how bright it is: a lamp of the scene, or one of the points or
@@ -43,6 +44,12 @@ class Lamp {
     Lamp mirrored(const WaterSurface& surface) const;
     /// The same emitter, which represents an emissive volume that light paths meet.
     Lamp met_by_paths() const;
+    /// The same emitter in a scene with glass, which dims what it lights (GlassShadedEmitter).
+    Lamp behind_glass(std::shared_ptr<const GlassOptics> glass) const;
+    /// The same in as many emitters as there are bands, one for the light of each, behind glass
+    /// that absorbs them differently.
+    std::vector<Lamp> behind_coloured_glass(const std::shared_ptr<const GlassOptics>& glass,
+                                            std::size_t bands) const;
     /// The same sun, focused by waves (FocusedEmitter): its light has the same irradiance on a
     /// level plane. Precondition: it is a sun.
     Lamp focused(std::shared_ptr<const SunFocus> focus) const;

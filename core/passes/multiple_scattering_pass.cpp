@@ -104,7 +104,7 @@ void HaloSource::find_radiance(const SurfaceSample& sample, const SurfaceLight& 
                                std::size_t index, std::span<double> radiance) const {
     const std::size_t groups = radiance.size() / bands_;
     const LitScene& scene = pixels_.scene();
-    if (sample.hit.is_water_surface) {  // the light that it mirrors counts as that of lamps
+    if (is_specular(sample.hit)) {  // the light that it mirrors counts as that of lamps
         std::ranges::fill(radiance, 0.0);
         return;
     }
@@ -546,7 +546,7 @@ void MultipleScattering::add(const PixelView& view, const SurfaceLight& light,
     Errors errors;
     add_volume(view, result, errors);
     for (std::size_t i = 0; i < view.samples.size(); ++i)
-        if (!view.samples[i].hit.is_water_surface)
+        if (!is_specular(view.samples[i].hit))
             add_surface(view.samples[i], light.to_camera(first_sample + i), result, errors);
     for (std::size_t b = 0; b < bands_; ++b)
         result.error[b] = result.pixel_factor * errors.of_band(b);

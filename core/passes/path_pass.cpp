@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/grid2d.h"
 #include "core/base/parallel.h"
+#include "core/geometry/glass.h"
 #include "core/geometry/surface_reflection.h"
 #include "core/light/integrator_table.h"
 #include "core/passes/pixel_terms.h"
@@ -26,10 +27,22 @@ constexpr int k_rays_at_once = 64;
 
 // Each estimate of a path has its own stream of random numbers, whose dimensions follow those of
 // the image position.
-enum Stream : std::uint64_t { k_position, k_single, k_water, k_surface, k_lit };
+enum Stream : std::uint64_t { k_position, k_single, k_water, k_surface, k_lit, k_glass };
 constexpr int k_position_dimensions = 2;
 // The aperture's dimensions lie beyond those of the rank-1 lattice, which the estimates use.
 constexpr int k_aperture_dimension = 64;
+
+// Behind glass, the streams of each further leg begin at another multiple of this.
+constexpr std::uint64_t k_streams = 16;
+
+/// Options of the legs that a camera ray's path has behind glass.
+struct GlassLegOptions {
+    /// The surfaces of glass that a path meets.
+    int max_surfaces = 64;
+    /// Below this weight it goes on by Russian roulette, in proportion to the weight.
+    double min_weight = 0.1;
+};
+constexpr GlassLegOptions k_glass_leg_options;
 
 // Parts of an exposure number their batches from first_sample << k_part_shift on, so that no two of
 // them have the same random numbers.
@@ -74,9 +87,10 @@ constexpr std::array k_kinds{
 struct PathPixels::Batch {
     std::uint64_t pixel, number;
     int samples;
+    std::uint64_t leg = 0;  // behind glass, from 1
 
     PathRandom random(Stream stream, int index) const {
-        PathRandom numbers(PathRandom::seed_of(pixel, number, stream),
+        PathRandom numbers(PathRandom::seed_of(pixel, number, stream + leg * k_streams),
                            static_cast<std::uint32_t>(index));
         if (stream != k_position) numbers.skip_to(k_position_dimensions);
         return numbers;
@@ -97,6 +111,7 @@ struct PathPixels::Scratch {
     // These are of one of them:
     std::vector<SeenLamp> lamps;
     CameraSegment segment;
+    SurfaceLight light_behind;  // of a leg behind glass
 };
 
 /// Adds contributions to the pixel and to the sum of the current batch.
@@ -110,6 +125,9 @@ class PathPixels::Sum final : public ContributionSink {
     void set_part(Spectrum PixelResult::*part) { part_ = part; }
     /// Sets the first slab: light that the water scatters there is added to backscatter_first, too.
     void set_first_slab(const Interval& slab) { first_slab_ = slab; }
+    /// Sets the factor, by band, on the next contributions.
+    void set_weight(const Spectrum& weight) { weight_ = weight; }
+    void reset_weight() { weight_.reset(); }
     /// Adds to the pixel's alpha, which counts the rays.
     void add_rays(std::size_t count) { pixel_.alpha += static_cast<double>(count); }
 
@@ -120,7 +138,14 @@ class PathPixels::Sum final : public ContributionSink {
     int add_vertex(int before, const PathVertex& vertex) override {
         return observer_ != nullptr ? observer_->add_vertex(before, vertex) : k_no_vertex;
     }
-    void add(const PathContribution& contribution) override {
+    void add(const PathContribution& arriving) override {
+        PathContribution contribution = arriving;
+        Spectrum weighted;
+        if (weight_) {
+            for (std::size_t b = 0; b < bands_; ++b)
+                weighted[b] = (*weight_)[b] * arriving.radiance[b];
+            contribution.radiance = weighted.first(bands_);
+        }
         if (observer_ != nullptr) observer_->add(contribution);
         add_to(pixel_.*part_, contribution);
         add_to(batch_, contribution);
@@ -148,6 +173,7 @@ class PathPixels::Sum final : public ContributionSink {
     ContributionSink* observer_;
     Spectrum PixelResult::*part_ = &PixelResult::direct;
     Interval first_slab_{};
+    std::optional<Spectrum> weight_;  // none: 1
     Spectrum batch_;
 };
 
@@ -219,7 +245,8 @@ void PathPixels::render_without_paths(int x, int y, const PathRound& round, Pixe
 
 void PathPixels::trace(int x, int y, const Batch& batch, Scratch& scratch, Sum& sum,
                        const TracedCallback& traced) const {
-    auto& [view, rays, indices, hits, found, samples, surfaces, light, lamps, segment] = scratch;
+    auto& [view, rays, indices, hits, found, samples, surfaces, light, lamps, segment, behind] =
+        scratch;
     for (int first = 0; first < batch.samples; first += k_rays_at_once) {
         throw_if_stopped();
         const int end = std::min(first + k_rays_at_once, batch.samples);
@@ -253,10 +280,12 @@ void PathPixels::trace(int x, int y, const Batch& batch, Scratch& scratch, Sum& 
         std::size_t light_index = 0;
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const SurfaceSample* const surface = found[i] != 0 ? &samples[i] : nullptr;
-            trace_path(surface, rays[i], light_index, batch, indices[i], scratch, sum);
+            trace_path(surface, rays[i], light, light_index, batch, indices[i], scratch, sum);
             if (surface != nullptr) ++light_index;
             add_lamps_in_view(rays[i], surface != nullptr ? surface->hit.distance : k_far, lamps,
                               sum);
+            if (surface != nullptr && surface->hit.glass != 0)
+                trace_behind_glass(*surface, batch, indices[i], scratch, sum);
         }
         sum.add_rays(rays.size());
         traced(end - first);
@@ -290,12 +319,79 @@ void PathPixels::add_lamps_in_view(const Ray& ray, double max_distance,
                  .place = ray.at(lamp.distance)});
 }
 
-void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, std::size_t light_index,
-                            const Batch& batch, int index, Scratch& scratch, Sum& sum) const {
+/// Follows a camera ray on from the glass that it meets, reflected or refracted at random at each
+/// surface, with the light that arrives along each of its legs. Precondition: the segment is that
+/// of the ray, up to the glass.
+void PathPixels::trace_behind_glass(const SurfaceSample& glass, const Batch& batch, int index,
+                                    Scratch& scratch, Sum& sum) const {
+    constexpr const GlassLegOptions& options = k_glass_leg_options;
+    const LitScene& scene = pixels_.scene();
+    const GlassOptics& optics = *scene.glass;
+    const std::size_t bands = sum.bands();
+    PathRandom random = batch.random(k_glass, index);
+    GlassRay ray{glass.ray, {}};
+    SurfaceSample sample = glass;
+    Spectrum weight = scratch.segment.transmittance;
+    Batch leg = batch;
+    for (int i = 0; i < options.max_surfaces; ++i) {
+        if (sample.hit.glass != 0) {
+            const GlassSplit split = optics.split(ray, sample.hit);
+            double reflected = 0, transmitted = 0;
+            for (std::size_t b = 0; b < bands; ++b) {
+                reflected += weight[b] * split.reflectance[b];
+                transmitted += weight[b] * split.transmittance[b];
+            }
+            if (!(reflected + transmitted > 0)) break;
+            const bool is_reflected = random.next() * (reflected + transmitted) < reflected;
+            weight *= is_reflected ? split.reflectance : split.transmittance;
+            weight *= (reflected + transmitted) / (is_reflected ? reflected : transmitted);
+            ray = is_reflected ? split.reflected : split.transmitted;
+        } else {
+            const WaterSurface& surface = *scene.water_surface;
+            weight *= surface.reflectance_from_water(
+                -glm::dot(ray.ray.direction, sample.hit.geometric_normal));
+            ray = {surface.reflected(ray.ray, {sample.hit.distance, -sample.hit.geometric_normal}),
+                   {}};
+        }
+        const double largest = weight.greatest(bands);
+        if (largest < options.min_weight) {
+            if (!(random.next() * options.min_weight < largest)) break;
+            weight *= options.min_weight / largest;
+        }
+        sample.ray = ray.ray;
+        const bool has_hit = scene.surfaces->closest_hit(ray.ray, k_far, sample.hit);
+        const bool is_in_water = ray.around.glass() == 0;
+        SurfaceLight& light = scratch.light_behind;
+        if (has_hit) pixels_.transport().surfaces->evaluate_one(sample, light);
+        sum.set_weight(weight);
+        sum.set_first_slab({});
+        if (is_in_water) {
+            ++leg.leg;
+            trace_path(has_hit ? &sample : nullptr, ray.ray, light, 0, leg, index, scratch, sum);
+            add_lamps_in_view(ray.ray, has_hit ? sample.hit.distance : k_far, scratch.lamps, sum);
+            if (!has_hit) break;
+            weight *= scratch.segment.transmittance;
+        } else {
+            if (!has_hit) break;
+            optics.absorb(ray.around, sample.hit.distance, weight);
+            std::ranges::fill(light.to_camera(0), 1.0);
+            sum.set_weight(weight * optics.radiance_in_water(ray.around));
+            sum.set_part(&PixelResult::direct);
+            Spectrum leaving;
+            if (sample.hit.glass == 0) add_direct_light(scene, sample, light, 0, sum, leaving);
+        }
+        if (!is_specular(sample.hit)) break;
+    }
+    sum.reset_weight();
+}
+
+void PathPixels::trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                            std::size_t light_index, const Batch& batch, int index,
+                            Scratch& scratch, Sum& sum) const {
     CameraSegment& segment = scratch.segment;
-    begin(surface, ray, scratch.light, light_index, segment, sum);
+    begin(surface, ray, light, light_index, segment, sum);
     segment.multiply_paths(path_counts_);
-    if (pixels_.in_scatter().parts().first_slab)
+    if (pixels_.in_scatter().parts().first_slab && batch.leg == 0)
         sum.set_first_slab(pixels_.in_scatter().first_slab_along(ray));
     sum.set_part(&PixelResult::backscatter);
     PathRandom random = batch.random(k_single, index);

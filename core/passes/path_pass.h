@@ -75,8 +75,11 @@ class PathPixels {
                const TracedCallback& traced) const;
     void add_lamps_in_view(const Ray& ray, double max_distance, std::vector<SeenLamp>& lamps,
                            Sum& sum) const;
-    void trace_path(const SurfaceSample* surface, const Ray& ray, std::size_t light_index,
-                    const Batch& batch, int index, Scratch& scratch, Sum& sum) const;
+    void trace_behind_glass(const SurfaceSample& glass, const Batch& batch, int index,
+                            Scratch& scratch, Sum& sum) const;
+    void trace_path(const SurfaceSample* surface, const Ray& ray, const SurfaceLight& light,
+                    std::size_t light_index, const Batch& batch, int index, Scratch& scratch,
+                    Sum& sum) const;
 
     const PixelRenderer& pixels_;
     std::size_t order_count_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/geometry/glass.h"
 #include "core/geometry/surface_reflection.h"
 #include "core/light/integrator.h"
 #include "core/paths/scattering_tables.h"
@@ -301,6 +302,13 @@ NextEventEstimator::NextEventEstimator(const WaterOptics& optics, const Scatteri
       deep_shadows_(std::move(deep_shadows)),
       emitters_(std::move(emitters)) {}
 
+void NextEventEstimator::dim_by_glass(const Point3& origin, const Point3& x,
+                                      std::span<double> radiance) const {
+    if (optics_.scene().glass == nullptr) return;
+    const Spectrum left = optics_.scene().glass->transmittance(origin, x);
+    for (std::size_t b = 0; b < radiance.size(); ++b) radiance[b] *= left[b];
+}
+
 void NextEventEstimator::column_to_lamp(std::size_t lamp, const Point3& x,
                                         std::span<double> column) const {
     if (column.empty()) return;
@@ -366,6 +374,7 @@ void NextEventEstimator::estimate_in_scatter(const WaterSegment& segment, const 
         for (std::size_t m = 0; m < phases; ++m) beta += w.point.scattering[m][b] * w.p[m];
         radiance[b] *= factor * even[b] * beta * intensity[b] * state.throughput[b];
     }
+    dim_by_glass(origin, x, radiance);
     PathContribution contribution = state.contribution(lamp.index(), radiance);
     if (contribution.scatterings + contribution.reflections == 0)
         contribution.distance = s;  // on the camera ray
@@ -447,6 +456,7 @@ void NextEventEstimator::estimate_direct_light(const WaterSegment& segment,
     for (std::size_t b = 0; b < bands; ++b)
         radiance[b] *= candidate.geometry / probability * intensity[b] * w.brdf[b] *
                        transmittance[b] * state.throughput[b];
+    dim_by_glass(origin, hit.position, radiance);
     PathContribution contribution = state.contribution(lamp.index(), radiance);
     ++contribution.reflections;
     contribution.place = hit.position;

@@ -171,6 +171,8 @@ class NextEventEstimator {
                                const PathState& state, PathRandom& random, ContributionSink& sink,
                                NextEventScratch& scratch) const;
 
+    /// Multiplies light from `origin` by what glass on its way to `x` leaves of it.
+    void dim_by_glass(const Point3& origin, const Point3& x, std::span<double> radiance) const;
     /// The columns of the constituents between a lamp and a point [unit m].
     void column_to_lamp(std::size_t lamp, const Point3& x, std::span<double> column) const;
 

@@ -4,6 +4,8 @@
 #include <span>
 #include <utility>
 
+#include "core/light/glass_shaded_emitter.h"
+
 namespace uw {
 
 PathTables::PathTables(const LitScene& scene, const ScatteringTables& tables,
@@ -33,37 +35,71 @@ PathTables::PathTables(const LitScene& scene, const ScatteringTables& tables,
 
 namespace {
 
+/// An emitter as paths see it: what glass does to its light they find along each line, in all bands
+/// at once (NextEventEstimator).
+struct PathEmitter {
+    Lamp lamp;
+    std::size_t number;  // of the scene's emitters, the first of those that are one for each band
+};
+
+std::vector<PathEmitter> without_glass(const std::vector<Lamp>& emitters) {
+    std::vector<PathEmitter> result;
+    const auto shaded = [&](std::size_t i) {
+        return i < emitters.size() ? dynamic_cast<const GlassShadedEmitter*>(&emitters[i].emitter())
+                                   : nullptr;
+    };
+    for (std::size_t i = 0; i < emitters.size(); ++i) {
+        const GlassShadedEmitter* const first = shaded(i);
+        if (first == nullptr) {
+            result.push_back({emitters[i], i});
+            continue;
+        }
+        const Lamp& lamp = emitters[i];
+        Spectrum intensity = lamp.axis_intensity();
+        std::size_t next = i + 1;
+        for (; shaded(next) != nullptr && shaded(next)->original() == first->original(); ++next)
+            intensity += emitters[next].axis_intensity();
+        const Lamp whole(lamp.name(), first->original(), intensity, lamp.index(),
+                         lamp.fraction() * static_cast<double>(next - i));
+        result.push_back({lamp.is_met_by_paths() ? whole.met_by_paths() : whole, i});
+        i = next - 1;
+    }
+    return result;
+}
+
 // A lamp's emitters, and those of its mirror image.
 struct LampEmitters {
     std::vector<std::size_t> own, images;
 };
 
-std::vector<LampEmitters> emitters_by_lamp(const std::vector<Lamp>& emitters) {
+std::vector<LampEmitters> emitters_by_lamp(const std::vector<PathEmitter>& emitters) {
     std::vector<LampEmitters> lamps;
     for (std::size_t i = 0; i < emitters.size(); ++i) {
-        if (emitters[i].index() == lamps.size()) lamps.emplace_back();
-        (emitters[i].is_mirrored() ? lamps.back().images : lamps.back().own).push_back(i);
+        const Lamp& lamp = emitters[i].lamp;
+        if (lamp.index() == lamps.size()) lamps.emplace_back();
+        (lamp.is_mirrored() ? lamps.back().images : lamps.back().own).push_back(i);
     }
     return lamps;
 }
 
 }  // namespace
 
-std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
+std::vector<LampView> lamp_views(const std::vector<Lamp>& all) {
+    const std::vector<PathEmitter> emitters = without_glass(all);
     const std::vector<LampEmitters> lamps = emitters_by_lamp(emitters);
     std::size_t view_count = 1;
     for (const LampEmitters& lamp : lamps)
-        if (!emitters[lamp.own.front()].is_met_by_paths())
+        if (!emitters[lamp.own.front()].lamp.is_met_by_paths())
             view_count = std::max(view_count, lamp.own.size());
     std::vector<LampView> views(view_count);
     // Distributes a lamp's emitters evenly among the views, each the brighter the fewer views it is
     // in. Those of a volume that paths meet are for guiding alone: one is enough.
     const auto distribute = [&](const std::vector<std::size_t>& of_lamp) {
-        if (!of_lamp.empty() && emitters[of_lamp.front()].is_met_by_paths()) {
-            const Lamp& emitter = emitters[of_lamp.front()];
+        if (!of_lamp.empty() && emitters[of_lamp.front()].lamp.is_met_by_paths()) {
+            const auto& [emitter, number] = emitters[of_lamp.front()];
             for (LampView& view : views) {
                 view.lamps.push_back(emitter.brightened(1 / emitter.fraction()));
-                view.emitters.push_back(of_lamp.front());
+                view.emitters.push_back(number);
             }
             return;
         }
@@ -72,10 +108,10 @@ std::vector<LampView> lamp_views(const std::vector<Lamp>& emitters) {
             const std::size_t begin = e * view_count / count, end = (e + 1) * view_count / count;
             const double weight =
                 static_cast<double>(view_count) / static_cast<double>(end - begin);
-            const Lamp& emitter = emitters[of_lamp[e]];
+            const auto& [emitter, number] = emitters[of_lamp[e]];
             for (std::size_t view = begin; view < end; ++view) {
                 views[view].lamps.push_back(count == 1 ? emitter : emitter.brightened(weight));
-                views[view].emitters.push_back(of_lamp[e]);
+                views[view].emitters.push_back(number);
             }
         }
     };

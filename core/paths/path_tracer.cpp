@@ -216,7 +216,7 @@ void PathTracer::weigh_intervals(std::span<const double> surface_light,
     const std::vector<double>& s = segment.distances;
     Spectrum light_of_surface, weights;
     // Light of the sky that is scattered is that of lamps.
-    const bool has_surface = water.has_hit && !water.hit.is_water_surface && !surface_light.empty();
+    const bool has_surface = water.has_hit && !is_specular(water.hit) && !surface_light.empty();
     const double reflected =
         has_surface ? expect_surface(segment, surface_light, light_of_surface) : 0;
     PathScratch& scratch = segment.scratch;
@@ -377,7 +377,7 @@ bool PathTracer::find_lit_surface(CameraSegment& segment, PathRandom& random,
 
 double PathTracer::trace_surface(CameraSegment& segment, PathRandom& random,
                                  ContributionSink& sink) const {
-    if (!segment.water.has_hit || segment.water.hit.is_water_surface) return 0;
+    if (!segment.water.has_hit || is_specular(segment.water.hit)) return 0;
     return trace_paths(segment.paths.surface, random, [&] {
         const PathTables& tables = choose_tables(random);
         PathState state = begin_path(segment, tables.optics.bands(), sink);

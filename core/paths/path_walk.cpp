@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/geometry/glass.h"
+#include "core/paths/glass_passage.h"
 #include "core/paths/irradiance_cache.h"
 
 namespace uw {
@@ -70,6 +72,17 @@ struct RandomWalkOptions {
 };
 constexpr RandomWalkOptions k_walk_options;
 
+/// Reflection and refraction by the water's surface and glass.
+struct SpecularOptions {
+    /// Where no roulette ends a path, it meets this many specular surfaces in a row.
+    int max_surfaces = 16;
+};
+constexpr SpecularOptions k_specular_options;
+
+Spectrum ones(std::size_t bands) {
+    return per_band(bands, [](std::size_t) { return 1.0; });
+}
+
 double sum_over_bands(const Spectrum& values, std::size_t bands) {
     double sum = 0;
     for (const double value : values.first(bands)) sum += value;
@@ -81,8 +94,8 @@ double contribution_of(double radiance, const PathState& state, std::size_t band
     return sum_over_bands(state.throughput, bands) / static_cast<double>(bands) * radiance;
 }
 
-bool meets_water_surface(const WaterSegment& segment) {
-    return segment.has_hit && segment.hit.is_water_surface;
+bool meets_specular_surface(const WaterSegment& segment) {
+    return segment.has_hit && is_specular(segment.hit);
 }
 
 }  // namespace
@@ -107,7 +120,6 @@ void PathWalk::trace_from_surface(PathState state, const SurfaceSample& surface)
 }
 
 void PathWalk::trace_mirrored(PathState state, const SurfaceSample& surface) {
-    const std::size_t bands = tables_.optics.bands();
     state.meets_emission = false;
     PathSegment& next = scratch_.segment;
     const DirectionSampler vertex = add_reflection(state, surface.ray, surface.hit, next.guides);
@@ -117,11 +129,8 @@ void PathWalk::trace_mirrored(PathState state, const SurfaceSample& surface) {
     if (!goes_on) return;
     trace_segment(state, next);
     estimate_next_event(state, next);
-    if (!meets_water_surface(next.water)) return;
-    const double reflectance = water_surface_reflectance(next.water);
-    for (std::size_t b = 0; b < bands; ++b)
-        state.throughput[b] *= next.transmittance[b] * reflectance;
-    follow_mirrored(state, next);
+    for (int i = 0; i < k_specular_options.max_surfaces && meets_specular_surface(next.water); ++i)
+        if (!follow_specular(state, next, next.transmittance)) return;
 }
 
 // One branch after the other: sample a direction, estimate the next event along it, play Russian
@@ -235,13 +244,11 @@ std::optional<DirectionSampler> PathWalk::sample_vertex(PathState& state, PathSe
         }
         for (std::size_t b = 0; b < bands; ++b)
             state.throughput[b] *= segment.transmittance[b] * sum / surface;
-        if (!meets_water_surface(water)) {
+        if (!meets_specular_surface(water)) {
             state.left = {water.hit.position, water.hit.geometric_normal, segment.surface_radiance};
             return add_reflection(state, water.ray, water.hit, segment.guides);
         }
-        const double reflectance = water_surface_reflectance(water);
-        for (double& value : state.throughput.first(bands)) value *= reflectance;
-        follow_mirrored(state, segment);
+        if (!follow_specular(state, segment, ones(bands))) return std::nullopt;
         segment.guides.find(tables_.guides, state.ray.origin, state.throughput);
         expect_surface(state, segment);
     }
@@ -342,11 +349,25 @@ Spectrum PathWalk::transmittance(const WaterSegment& segment) {
     return values;
 }
 
-void PathWalk::follow_mirrored(PathState& state, PathSegment& segment) {
+bool PathWalk::follow_specular(PathState& state, PathSegment& segment, Spectrum factor) {
+    const std::optional<Ray> ray = sample_specular(segment.water, state.throughput, factor);
+    if (!ray) return false;
+    for (std::size_t b = 0; b < tables_.optics.bands(); ++b) state.throughput[b] *= factor[b];
     add_vertex(state, PathVertex::Kind::mirrored, segment.water.hit.position);
-    state.ray = mirrored_ray(segment.water);
+    state.ray = *ray;
     trace_segment(state, segment);
     estimate_next_event(state, segment);
+    return true;
+}
+
+std::optional<Ray> PathWalk::sample_specular(const WaterSegment& segment,
+                                             const Spectrum& throughput, Spectrum& factor) {
+    if (!segment.hit.is_water_surface)
+        return sample_glass_passage(tables_.optics.scene(), segment.ray, segment.hit, throughput,
+                                    random_, factor);
+    const double reflectance = water_surface_reflectance(segment);
+    for (double& value : factor.first(tables_.optics.bands())) value *= reflectance;
+    return mirrored_ray(segment);
 }
 
 Ray PathWalk::mirrored_ray(const WaterSegment& segment) const {
@@ -366,7 +387,7 @@ void PathWalk::estimate_next_event(PathState& state, const PathSegment& segment)
     if (state.was_scattered && state.meets_emission)
         tables_.guides.emission.estimate(tables_.optics, water, state, random_, sink_,
                                          scratch_.emission);
-    if (!water.has_hit || state.stays_in_water || meets_water_surface(water)) return;
+    if (!water.has_hit || state.stays_in_water || meets_specular_surface(water)) return;
     add_surface_light(state, water, segment.transmittance);
 }
 
@@ -418,20 +439,21 @@ void PathWalk::add_reflected_emission(PathState state, const WaterSegment& segme
     WaterSegment& next = scratch_.towards_emission;
     optics.trace({x, direction}, next);
     emission.estimate(optics, next, state, random_, sink_, scratch_.emission);
-    if (!meets_water_surface(next)) return;
-    const Spectrum to_mirror = this->transmittance(next);
-    const double reflectance = water_surface_reflectance(next);
-    for (std::size_t b = 0; b < optics.bands(); ++b)
-        state.throughput[b] *= to_mirror[b] * reflectance;
-    add_vertex(state, PathVertex::Kind::mirrored, next.hit.position);
-    optics.trace(mirrored_ray(next), next);
-    emission.estimate(optics, next, state, random_, sink_, scratch_.emission);
+    for (int i = 0; i < k_specular_options.max_surfaces && meets_specular_surface(next); ++i) {
+        Spectrum factor = this->transmittance(next);
+        const std::optional<Ray> ray = sample_specular(next, state.throughput, factor);
+        if (!ray) return;
+        for (std::size_t b = 0; b < optics.bands(); ++b) state.throughput[b] *= factor[b];
+        add_vertex(state, PathVertex::Kind::mirrored, next.hit.position);
+        optics.trace(*ray, next);
+        emission.estimate(optics, next, state, random_, sink_, scratch_.emission);
+    }
 }
 
 void PathWalk::expect_surface(const PathState& state, PathSegment& segment) {
     segment.surface_contribution = segment.surface_radiance = 0;
     const WaterSegment& water = segment.water;
-    if (!water.has_hit || (state.stays_in_water && !meets_water_surface(water))) return;
+    if (!water.has_hit || (state.stays_in_water && !meets_specular_surface(water))) return;
     Spectrum arriving;
     double arrived = 0;
     for (std::size_t b = 0; b < tables_.optics.bands(); ++b) {
@@ -440,19 +462,27 @@ void PathWalk::expect_surface(const PathState& state, PathSegment& segment) {
     }
     if (!(arrived > 0)) return;
     segment.surface_radiance =
-        meets_water_surface(water)
-            ? water_surface_reflectance(water) * expected_in_mirror(state, water, arriving)
+        meets_specular_surface(water)
+            ? expected_from_specular(state, water, arriving)
             : std::max(k_expectation_options.ambient_of_surface * state.expected.ambient,
                        estimated_reflection(tables_.guides, water.hit, arriving, scratch_.column));
     segment.surface_contribution = arrived * segment.surface_radiance;
 }
 
-// What the water's surface mirrors: scattered light, and the next surface.
-double PathWalk::expected_in_mirror(const PathState& state, const WaterSegment& segment,
+// Most glass lets most light through, and hardly bends it.
+double PathWalk::expected_from_specular(const PathState& state, const WaterSegment& segment,
+                                        const Spectrum& throughput) {
+    if (segment.hit.is_water_surface)
+        return water_surface_reflectance(segment) *
+               expected_in_mirror(state, mirrored_ray(segment), throughput);
+    return expected_in_mirror(state, {segment.hit.position, segment.ray.direction}, throughput);
+}
+
+// What a specular surface shows: scattered light, and the next surface that is not of glass.
+double PathWalk::expected_in_mirror(const PathState& state, const Ray& mirrored,
                                     const Spectrum& throughput) {
     constexpr const ExpectationOptions& options = k_expectation_options;
     const WaterOptics& optics = tables_.optics;
-    const Ray mirrored = mirrored_ray(segment);
     GuidingDistribution& guides = scratch_.guides_in_mirror;
     guides.find(tables_.guides, mirrored.origin, throughput);
     double radiance = guides.multiple(mirrored.direction) +
@@ -460,7 +490,9 @@ double PathWalk::expected_in_mirror(const PathState& state, const WaterSegment& 
                       std::max(options.ambient_of_direction * state.expected.ambient,
                                options.pixel_in_mirror * state.expected.pixel);
     SurfaceHit hit;
-    if (optics.scene().surfaces->closest_hit(mirrored, k_far, hit) && !hit.is_water_surface)
+    const Surfaces& surfaces =
+        optics.scene().glass ? optics.scene().glass->surfaces().opaque() : *optics.scene().surfaces;
+    if (surfaces.closest_hit(mirrored, k_far, hit) && !hit.is_water_surface)
         radiance += std::exp(-optics.attenuation().uniform[optics.clearest_band()] * hit.distance) *
                     estimated_reflection(tables_.guides, hit, throughput, scratch_.column);
     return radiance;
@@ -491,11 +523,13 @@ const WaterSegment* PathWalk::walk_to_surface(PathState& state,
         for (double& weight : weights.first(bands)) weight /= lost;
         const double s = sample_free_flight(*water, weights, to_end, random_.next());
         if (!is_first && meets_surface_before(s, weights, state, segment)) {
-            if (!meets_water_surface(segment)) return &segment;
-            const double reflectance = water_surface_reflectance(segment);
-            for (double& value : throughput) value *= reflectance;
+            if (!meets_specular_surface(segment)) return &segment;
+            Spectrum factor = ones(bands);
+            const std::optional<Ray> ray = sample_specular(segment, state.throughput, factor);
+            if (!ray) return nullptr;
+            for (std::size_t b = 0; b < bands; ++b) throughput[b] *= factor[b];
             add_vertex(state, PathVertex::Kind::mirrored, segment.hit.position);
-            state.ray = mirrored_ray(segment);
+            state.ray = *ray;
             optics.set(state.ray, nullptr, segment);
             continue;
         }
@@ -584,7 +618,7 @@ bool PathWalk::meets_surface_before(double distance, const Spectrum& weights, Pa
 
 void PathWalk::trace_lit_surface(PathState state, const WaterSegment& segment) {
     const std::size_t bands = tables_.optics.bands();
-    add_surface_light(state, segment, per_band(bands, [](std::size_t) { return 1.0; }));
+    add_surface_light(state, segment, ones(bands));
     const SurfaceSample surface{segment.ray, segment.hit, 0, 0};
     const double contribution = contribution_of(
         estimated_reflection(tables_.guides, surface.hit, state.throughput, scratch_.column) +
@@ -601,7 +635,7 @@ void PathWalk::trace_lit_surface(PathState state, const WaterSegment& segment) {
 void PathWalk::trace_lit_surface(PathState state, const WaterSegment& segment,
                                  const IrradianceCache& indirect) {
     const std::size_t bands = tables_.optics.bands();
-    add_surface_light(state, segment, per_band(bands, [](std::size_t) { return 1.0; }));
+    add_surface_light(state, segment, ones(bands));
     const SurfaceHit& hit = segment.hit;
     if (hit.has_material && tables_.optics.scene().surfaces->material(hit).is_glossy) {
         trace_from_surface(state, {segment.ray, hit, 0, 0});

@@ -140,8 +140,13 @@ class PathWalk {
     // Fills the segment along the state's ray, but for its guides and what is expected of it.
     void trace_segment(const PathState& state, PathSegment& segment);
     Spectrum transmittance(const WaterSegment& segment);
-    // Goes on along the segment that begins where the water's surface mirrors the path.
-    void follow_mirrored(PathState& state, PathSegment& segment);
+    // Goes on along the segment that begins where a specular surface mirrors or refracts the path,
+    // of which `factor` is left before it; false where the path ends.
+    bool follow_specular(PathState& state, PathSegment& segment, Spectrum factor);
+    // Samples how a path with this throughput goes on from the specular surface at the segment's
+    // end, and multiplies `factor` by what is left of its light; nothing where it ends.
+    std::optional<Ray> sample_specular(const WaterSegment& segment, const Spectrum& throughput,
+                                       Spectrum& factor);
     Ray mirrored_ray(const WaterSegment& segment) const;
     double water_surface_reflectance(const WaterSegment& segment) const;
 
@@ -153,7 +158,11 @@ class PathWalk {
                                 const Spectrum& transmittance);
     // Sets what is expected of the surface at the segment's end.
     void expect_surface(const PathState& state, PathSegment& segment);
-    double expected_in_mirror(const PathState& state, const WaterSegment& segment,
+    // What is expected of a specular surface at the segment's end.
+    double expected_from_specular(const PathState& state, const WaterSegment& segment,
+                                  const Spectrum& throughput);
+    // What is expected to arrive along the ray by which a specular surface is left.
+    double expected_in_mirror(const PathState& state, const Ray& mirrored,
                               const Spectrum& throughput);
 
     // Steps of the random walk. The weights are those of the bands, over what they lose together.

@@ -30,6 +30,45 @@ PerBand read_reflectance(const ConfigValue& value, const SceneContext& context) 
     return reflectance;
 }
 
+/// `material` of an entry that is of glass.
+std::optional<GlassDesc> read_glass(const ConfigValue& value, const SceneContext& context,
+                                    GeometryDesc::Type type) {
+    const bool is_word = value.node().kind == ConfigNode::Kind::scalar;
+    if (is_word && value.node().scalar != "glass") return std::nullopt;
+    GlassDesc glass;
+    if (!is_word) {
+        ConfigMap map(value, {"type", "n", "thin", "thickness", "absorption", "roughness"},
+                      "write {type: glass, n: 1.5}");
+        constexpr std::array<std::pair<std::string_view, bool>, 1> k_types{{{"glass", true}}};
+        map.require("type", "write type: glass").choice(k_types);
+        if (const auto n = map.find("n"))
+            glass.n = n->within(1, 3, "give the refractive index: 1.5 is glass, 1 is air");
+        if (const auto roughness = map.find("roughness");
+            roughness && roughness->non_negative("glass is smooth: write 0, or leave it out") > 0)
+            roughness->fail("rough glass is not rendered; write 0, or leave it out");
+        constexpr std::array<std::pair<std::string_view, bool>, 2> k_booleans{
+            {{"false", false}, {"true", true}}};
+        if (const auto thin = map.find("thin")) glass.is_thin = thin->choice(k_booleans);
+        if (const auto absorption = map.find("absorption")) {
+            glass.absorption = absorption->non_negative_per_band(
+                context.band_count, "give the absorption coefficient of the glass in 1/m");
+        }
+        if (const auto thickness = map.find("thickness")) {
+            if (!glass.is_thin)
+                thickness->fail(
+                    "is that of a thin pane; solid glass is as thick as its shape: add thin: true, "
+                    "or remove it");
+            glass.thickness = thickness->positive("give the thickness of the pane in metres");
+        } else if (glass.is_thin && !glass.absorption.empty()) {
+            value.fail("thin glass that absorbs needs a thickness; give it in metres");
+        }
+        map.finish("type 'glass'");
+    }
+    if (type == GeometryDesc::Type::plane && !glass.is_thin)
+        value.fail("a plane encloses no solid glass; add thin: true, or use a box");
+    return glass;
+}
+
 void read_box(ConfigMap& map, GeometryDesc& object) {
     const ConfigValue low = map.require("min", "give the box's lowest corner in metres");
     const ConfigValue high = map.require("max", "give the box's highest corner in metres");
@@ -45,11 +84,14 @@ void read_box(ConfigMap& map, GeometryDesc& object) {
     }
 }
 
-void read_shape(ConfigMap& map, const ConfigValue& type, GeometryDesc& object) {
+template <class ReadMaterial>
+void read_shape(ConfigMap& map, const ConfigValue& type, GeometryDesc& object,
+                const ReadMaterial& read_material) {
     using Type = GeometryDesc::Type;
     constexpr std::array<std::pair<std::string_view, Type>, 3> k_types{
         {{"plane", Type::plane}, {"box", Type::box}, {"sphere", Type::sphere}}};
     object.type = type.choice(k_types);
+    read_material();
     if (object.type == Type::plane) {
         object.point =
             at_origin_plus(map.require("point", "give a point of the plane").vector(k_lengths));
@@ -113,7 +155,7 @@ void read_gltf_keys(ConfigMap& map, GeometryDesc& object) {
              {"raw", LightUnits::raw}}};
         import.units = units->choice(k_units);
     }
-    if (const auto material = map.find("material")) {
+    if (const auto material = map.find("material"); material && !object.glass) {
         if (extension != ".obj") check_file(*material);
         constexpr std::array<std::pair<std::string_view, bool>, 2> k_materials{
             {{"diffuse", false}, {"pbr", true}}};
@@ -146,13 +188,29 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
     }
     if (const auto entry = map.find("trajectory"))
         object.trajectory = read_trajectory(*entry, context, false);
+    const auto read_material = [&] {
+        if (!map.has("material")) return;
+        const ConfigNode* const node = value.node().find("material");
+        const bool is_word = node->kind == ConfigNode::Kind::scalar && node->scalar != "glass";
+        // Other materials are those of files (read_gltf_keys).
+        if (is_word && object.type == GeometryDesc::Type::file && !map.has("mesh")) return;
+        const ConfigValue material = map.require("material", "");
+        if (is_word)
+            material.fail(
+                "the only material of a shape or a mesh in memory is glass; write "
+                "material: {type: glass, n: 1.5}, or remove it");
+        object.glass = read_glass(material, context, object.type);
+        if (object.reflectance)
+            material.fail("glass has no reflectance of its own; remove one of the two");
+    };
     if (const auto type = map.find("type")) {
-        read_shape(map, *type, object);
+        read_shape(map, *type, object, read_material);
         return object;
     }
     if (const auto mesh = map.find("mesh")) {
         object.mesh = read_in_memory(*mesh, context.arrays ? &context.arrays->meshes : nullptr);
         object.mesh_name = mesh->node().scalar;
+        read_material();
         if (const auto entry = map.find("transform"))
             object.world_from_object = read_transform(*entry);
         map.finish("a mesh in memory");
@@ -162,6 +220,7 @@ GeometryDesc read_object(const ConfigValue& value, const SceneContext& context) 
         map.require("file", "give a mesh file, or type: plane, box or sphere"), context,
         object.is_sequence);
     if (const auto entry = map.find("transform")) object.world_from_object = read_transform(*entry);
+    read_material();
     const std::string extension = object.file.extension().string();
     if (extension == ".vdb" || extension == ".nvdb") {
         read_level_set(map, object);

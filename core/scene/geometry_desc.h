@@ -46,6 +46,16 @@ struct LevelSetDesc {
     friend bool operator==(const LevelSetDesc&, const LevelSetDesc&) = default;
 };
 
+/// Glass: `material: {type: glass}`. Smooth and transparent.
+struct GlassDesc {
+    double n = 1.5;        ///< refractive index, 1 (air) to 3
+    bool is_thin = false;  ///< a surface is a whole pane; else surfaces enclose the glass
+    double thickness = 0;  ///< of a thin pane [m]
+    PerBand absorption;    ///< [1/m]; empty: none
+
+    friend bool operator==(const GlassDesc&, const GlassDesc&) = default;
+};
+
 /// A span of time [s], both ends included.
 struct TimeRange {
     double first = 0, last = 0;
@@ -78,6 +88,7 @@ struct GeometryDesc {
     bool is_pbr =
         false;  ///< a glTF or OBJ file's metallic-roughness materials; else all is diffuse
     bool is_material_given = false;  ///< which of them is written in the scene
+    std::optional<GlassDesc> glass;  ///< all of it is of glass
     SourceLocation where;
 
     friend bool operator==(const GeometryDesc&, const GeometryDesc&) = default;

@@ -40,6 +40,7 @@ void refuse_other_images(const AssembledScene& scene, const std::string& name) {
             "water.forward_scatter, or set its K to 0");
     if (plan.is_provided(Layer::snow))
         refuse("marine snow is drawn particle by particle and has none; remove water.snow");
+    if (scene.glass) refuse("what glass shows has none; remove the surfaces of glass");
     if (Exposure(scene).part_count() > 0)
         refuse(
             "they are those of a single moment, not of the mean over an exposure; set "

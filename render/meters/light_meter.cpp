@@ -14,6 +14,7 @@
 #include "core/base/random.h"
 #include "core/geometry/surface_reflection.h"
 #include "core/geometry/water_surface.h"
+#include "core/paths/glass_passage.h"
 #include "core/paths/path_tracer.h"
 #include "core/paths/path_walk.h"
 #include "core/paths/scattering_tables.h"
@@ -159,14 +160,14 @@ class RadianceEstimate {
 
     /// `with_sky`: whether to include the radiance of the sky, for which beams are used otherwise.
     Spectrum operator()(Ray ray, std::uint64_t seed, std::uint32_t index, bool with_sky = false) {
-        constexpr int k_max_mirrors = 8;  // a plane surface has one
+        constexpr int k_max_mirrors = 8;  // a plane surface has one; glass has more
         Spectrum radiance{}, throughput = per_band(bands_, [](std::size_t) { return 1.0; });
         for (int mirrors = 0; mirrors < k_max_mirrors; ++mirrors) {
             SurfaceSample sample{ray, {}, 0, 0};
             const bool has_hit = scene_.surfaces->closest_hit(ray, k_far, sample.hit);
             sum_.reset();
             Spectrum leaving{};
-            const bool is_surface = has_hit && !sample.hit.is_water_surface;
+            const bool is_surface = has_hit && !is_specular(sample.hit);
             if (is_surface) find_direct(sample, leaving);
             transport_.paths->begin(ray, has_hit ? &sample.hit : nullptr, leaving.first(bands_),
                                     segment_);
@@ -186,6 +187,16 @@ class RadianceEstimate {
                 radiance[b] +=
                     throughput[b] * (sum_.sum()[b] + leaving[b] * segment_.transmittance[b]);
             if (!has_hit || is_surface) break;
+            if (sample.hit.glass != 0) {
+                PathRandom glass = stream(5);
+                Spectrum factor = segment_.transmittance;
+                const std::optional<Ray> next =
+                    sample_glass_passage(scene_.lit(), ray, sample.hit, throughput, glass, factor);
+                if (!next) break;
+                throughput *= factor;
+                ray = *next;
+                continue;
+            }
             if (with_sky) {
                 const Spectrum sky = scene_.surfaces->material(sample.hit).emission;
                 for (std::size_t b = 0; b < bands_; ++b)

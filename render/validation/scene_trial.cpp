@@ -80,6 +80,10 @@ class SceneTrial {
     SceneValidation run() {
         const auto start = std::chrono::steady_clock::now();
         TrialScene trial = make_trial(scene_);
+        if (trial.scene().glass)
+            throw InputError(
+                "validate: it compares light that scatters once on straight rays, which glass "
+                "bends; remove the surfaces of glass");
         std::optional<TrialScene> mixed;
         if (varies()) mixed = homogenised(trial, scene_);
         TrialScene& uniform = mixed ? *mixed : trial;

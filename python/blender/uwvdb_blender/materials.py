@@ -119,6 +119,17 @@ class Exporter:
         if not channels or self._baked is None or not set(channels) <= self._baked.wanted:
             self._note(material, text)
 
+    def export_glass(self, material, found, is_closed, chord):
+        """The same as export() for a material that is a glass.Glass."""
+        key = (material.name_full, is_closed, round(chord, 6))
+        if key not in self._known:
+            for fault in found.faults:
+                self._note(material, fault)
+            done = Exported(found.content(material.name, is_closed, chord))
+            self._known[key] = (self._glb.add_material(done.content), done)
+            self.pass_indices.append(material.pass_index)
+        return self._known[key]
+
     def note_clear(self, material):
         """Says what is missing of a material that is clear."""
         if not is_exactly_clear(material):

@@ -5,7 +5,7 @@ import time
 
 import numpy
 
-from . import glass, gltf, materials
+from . import glass, gltf, materials, units
 
 SURFACES = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 WITHOUT_SURFACE = {"EMPTY", "CAMERA", "LIGHT", "LIGHT_PROBE", "SPEAKER", "ARMATURE", "LATTICE",
@@ -149,7 +149,7 @@ class MeshFile:
                     corners = self._begun[key] = Corners(reading.mesh, len(slots))
                 while not corners.is_whole:
                     reading.go_on(corners.read_part)
-                parts = self._parts(shown, corners, slots, *key)
+                parts = self._parts(shown, corners, slots, _metres_of(shown, depsgraph), *key)
                 for part in parts:
                     if corners.lacks(part.exported):
                         reading.go_on(lambda mesh, part=part: corners.read(mesh, part.exported))
@@ -166,13 +166,18 @@ class MeshFile:
         is_usable = corners is not None and corners.slots == slots and _shows_its_own(shown, depsgraph)
         return corners if is_usable else None
 
-    def _parts(self, shown, corners, slots, key, is_hole):
+    def _parts(self, shown, corners, slots, metres, key, is_hole):
         """The materials of a mesh that are seen."""
         parts = []
         for index in corners.used_slots():
             material = slots[index] if slots else None
             if glass.is_clear(material):
-                self._materials.note_clear(material)
+                found = glass.glass_of(material) if not is_hole else None
+                if found is None:
+                    self._materials.note_clear(material)
+                else:
+                    parts.append(_Part(index, *self._materials.export_glass(
+                        material, found, *corners.inside(index, metres))))
             elif is_hole and materials.shows_surface(material):
                 parts.append(_Part(index, *self._materials.export_held_out()))
             elif materials.shows_surface(material):
@@ -190,6 +195,11 @@ class MeshFile:
         if exported.colours is not None and corners.colours[exported.colours] is None:
             self._notes.add(f"'{shown.name}' has no colour attribute '{exported.colours}' for its "
                             "material")
+
+
+def _metres_of(shown, depsgraph):
+    """How long the units of an object's mesh are, in the mean of its axes."""
+    return abs(shown.matrix_world.to_3x3().determinant()) ** (1 / 3) * units.metres_per_unit(depsgraph.scene)
 
 
 def _shows_its_own(shown, depsgraph):
@@ -320,6 +330,14 @@ class Corners:
         return loops, vertices, faces, {
             "positions": self._positions[vertices], "corners": corners.astype(numpy.int32).reshape(-1),
             "starts": starts, "normals": self._corner_normals(loops)}
+
+    def inside(self, slot, scale):
+        """Whether the faces of one material enclose something, and how far light goes through that in the mean;
+        `scale` is how long its units are."""
+        shape = self.faces_of(slot)[3]
+        if not glass.is_closed(shape["corners"], shape["starts"]):
+            return False, 0.0
+        return True, glass.mean_chord(shape["positions"], shape["corners"], shape["starts"], scale)
 
     def lacks(self, exported):
         return (any(name not in self.uv_maps for name in exported.uv_names)

@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "core/geometry/geometry_scene.h"
+#include "core/geometry/glass.h"
 #include "core/geometry/mesh_reader.h"
 #include "tests/support/image_file.h"
 #include "tests/support/meshes/mesh_reading.h"
@@ -193,6 +197,47 @@ TEST_F(GltfMaterials, PbrComesOnRequestOnly) {
     EXPECT_EQ(metal.reflectance[1], 0);
     EXPECT_EQ(metal_material.roughness, 0);
     EXPECT_NEAR(metal_material.f0[1], 0.6, 1e-12);
+}
+
+TEST_F(GltfMaterials, TransmissionIsGlass) {
+    const auto glass_of = [&](const std::string& more, std::vector<std::string>* warnings) {
+        TexturedGltf gltf;
+        gltf.material =
+            R"({"pbrMetallicRoughness":{"baseColorFactor":[1,0.5,0.25,1],"roughnessFactor":0},)"
+            R"("extensions":{)" +
+            more + "}}";
+        std::vector<std::string> ignored;
+        auto surfaces =
+            build_surfaces({desc(gltf)}, {620, 540, 450}, warnings ? *warnings : ignored);
+        const auto* const glass = dynamic_cast<const GlassSurfaces*>(surfaces.get());
+        EXPECT_EQ(glass != nullptr, hit_at(*surfaces, 0.25, 0.25).glass != 0);
+        return glass ? std::optional(glass->materials().at(0)) : std::nullopt;
+    };
+    const std::string all = R"("KHR_materials_transmission":{"transmissionFactor":1})";
+    const auto thin = glass_of(all, nullptr);
+    ASSERT_TRUE(thin);
+    EXPECT_EQ(thin->n, 1.5);
+    EXPECT_TRUE(thin->is_thin);
+    // What is left of light on the normal is the base colour.
+    EXPECT_NEAR(std::exp(-thin->absorption[0] * thin->thickness), 1, 1e-12);
+    EXPECT_NEAR(std::exp(-thin->absorption[1] * thin->thickness), 0.5, 1e-12);
+    EXPECT_NEAR(std::exp(-thin->absorption[2] * thin->thickness), 0.25, 1e-12);
+    std::vector<std::string> warnings;
+    const auto solid = glass_of(
+        all + R"(,"KHR_materials_ior":{"ior":1.33},"KHR_materials_volume":{"thicknessFactor":1,)" +
+            R"("attenuationColor":[1,0.5,0.1],"attenuationDistance":0.2})",
+        &warnings);
+    ASSERT_TRUE(solid);
+    EXPECT_EQ(solid->n, 1.33);
+    EXPECT_FALSE(solid->is_thin);
+    EXPECT_NEAR(std::exp(-0.2 * solid->absorption[2]), 0.1, 1e-12);
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("the base colour of solid glass"), std::string::npos) << warnings[0];
+    warnings.clear();
+    EXPECT_FALSE(
+        glass_of(R"("KHR_materials_transmission":{"transmissionFactor":0.3})", &warnings));
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_NE(warnings[0].find("transmission below 0.5"), std::string::npos) << warnings[0];
 }
 
 class NormalMaps : public GltfMaterials {

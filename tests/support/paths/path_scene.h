@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry/geometry_scene.h"
+#include "core/geometry/glass.h"
 #include "core/light/integrator.h"
 #include "media/volumes/grid_field.h"
 #include "tests/support/described_phase.h"
@@ -24,6 +25,7 @@ struct PathScene {
     std::unique_ptr<const ConcentrationField> field;
     std::unique_ptr<const Surfaces> surfaces;
     std::vector<Lamp> lamps;
+    std::shared_ptr<const GlassOptics> glass;  // null: no surface is of glass
 
     /// Uniform water with a Henyey-Greenstein phase function, one entry of `bands` per band.
     PathScene(const std::vector<BandOptics>& bands, double g)
@@ -67,7 +69,11 @@ struct PathScene {
     }
 
     std::size_t band_count() const { return medium.wavelengths_nm.size(); }
-    LitScene lit() const { return {&medium, field.get(), surfaces.get(), &lamps}; }
+    LitScene lit() const {
+        LitScene scene{&medium, field.get(), surfaces.get(), &lamps};
+        scene.glass = glass.get();
+        return scene;
+    }
 };
 
 /// A description with the same reflectance in all of `bands` bands.
