@@ -10,6 +10,7 @@
 #include "cli/runs/sweep_command.h"
 #include "cli/tools/calibration_command.h"
 #include "cli/tools/edit_command.h"
+#include "cli/tools/import_command.h"
 #include "cli/tools/measure_command.h"
 #include "cli/tools/points_commands.h"
 #include "cli/tools/record_command.h"
@@ -30,6 +31,7 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::sweep_command());
     commands.push_back(uw::validate_command());
     commands.push_back(uw::edit_command());
+    commands.push_back(uw::import_command());
     commands.push_back(uw::calibration_command());
     commands.push_back(uw::project_command());
     commands.push_back(uw::rays_command());
