@@ -9,6 +9,7 @@
 #include "cli/runs/dataset_command.h"
 #include "cli/runs/sweep_command.h"
 #include "cli/tools/calibration_command.h"
+#include "cli/tools/coefficients_command.h"
 #include "cli/tools/edit_command.h"
 #include "cli/tools/import_command.h"
 #include "cli/tools/measure_command.h"
@@ -25,6 +26,7 @@ void add_all(std::vector<uw::Command>& commands) {
     commands.push_back(uw::dataset_command());
     commands.push_back(uw::info_command());
     commands.push_back(uw::water_command());
+    commands.push_back(uw::coefficients_command());
     commands.push_back(uw::record_command());
     commands.push_back(uw::measure_command());
     commands.push_back(uw::fit_command());
