@@ -43,6 +43,10 @@ without water. Of lamps it falls off with distance, which is divided out unless 
 given. Renderings are in all light unless render.scattering is single. "here" is what the formula
 would need from one range to the next (beta_D) and up to a range (beta_B); "off" is how far it is
 from the rendering of a grey target (--reflectance).
+
+J counts the light that comes from lamps and sun straight to the target. What reaches it scattered
+makes beta_D smaller, below 0 where daylight that only scatters to the target outlasts the lamps:
+--keep-falloff is the better choice there.
 Exit codes: 0 done, 1 internal fault, 2 wrong usage, 3 bad input, 4 cannot read or write.
 More: docs/water.md)";
 

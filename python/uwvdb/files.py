@@ -71,7 +71,7 @@ def write_vdb(file: str | os.PathLike[str], array: ArrayLike | Mapping[str, Arra
     if not arrays:
         raise UsageError("write_vdb: there is no array; give one")
     size = np.asarray(_arrays.numbers("write_vdb: voxel_size", voxel_size, np.float64))
-    if size.shape != () or not (np.isfinite(size) and size > 0):
+    if size.shape != () or not 0 < float(size) < np.inf:
         raise UsageError(f"write_vdb: voxel_size: expected a number above 0, found {voxel_size!r}")
     first = _arrays.vector("write_vdb: origin", origin)
     grids = [(grid, _grid_values(f"write_vdb: {grid}", values)) for grid, values in arrays.items()]
