@@ -1,14 +1,21 @@
+#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "camera/calibration.h"
+#include "core/base/version.h"
 #include "core/scene/yaml_document.h"
 #include "media/inspection/vdb_inspect.h"
 #include "media/volumes/array_grid.h"
 #include "media/volumes/loaded_grid.h"
 #include "media/volumes/vdb_header.h"
+#include "media/volumes/vdb_writer.h"
 #include "python/arguments.h"
 #include "python/bindings.h"
 #include "python/camera.h"
@@ -46,6 +53,32 @@ py::tuple read_vdb(const FileName& file, const Text& wanted) {
     const Affine world_from_index =
         upright_from_file(placement.up) * array.file_from_index * Affine::translation(first);
     return py::make_tuple(array.name, values, matrix_of(world_from_index));
+}
+
+using Values = py::array_t<float, py::array::c_style | py::array::forcecast>;
+
+/// Arrays of three axes by the names of their grids; all have one place.
+void write_vdb_arrays(const FileName& file,
+                      const std::vector<std::pair<std::string, Values>>& arrays, double voxel_size,
+                      const std::array<double, 3>& origin) {
+    std::vector<VdbOutputGrid> grids;
+    for (const auto& [name, values] : arrays) {
+        VdbOutputGrid& grid = grids.emplace_back();
+        grid.name = name;
+        for (std::size_t axis = 0; axis < grid.size.size(); ++axis)
+            grid.size[axis] = static_cast<int>(values.shape(static_cast<py::ssize_t>(axis)));
+        grid.voxel_size = voxel_size;
+        grid.origin = {origin[0], origin[1], origin[2]};
+        const auto rows = static_cast<std::size_t>(grid.size[1]);
+        const auto columns = static_cast<std::size_t>(grid.size[2]);
+        grid.value = [first = values.data(), rows, columns](int i, int j, int k) {
+            return first[(static_cast<std::size_t>(i) * rows + static_cast<std::size_t>(j)) *
+                             columns +
+                         static_cast<std::size_t>(k)];
+        };
+    }
+    const py::gil_scoped_release release;
+    write_vdb(file, grids, {{"creator", "uwvdb " + program_version()}});
 }
 
 py::object box_of(const Bounds& bounds) {
@@ -108,6 +141,8 @@ py::dict load_calibration(const FileName& file, const Text& camera) {
 
 void bind_files(py::module_& module) {
     module.def("read_vdb", read_vdb, py::arg("file"), py::arg("grid"));
+    module.def("write_vdb", write_vdb_arrays, py::arg("file"), py::arg("arrays"),
+               py::arg("voxel_size"), py::arg("origin"));
     module.def("inspect", inspect, py::arg("file"));
     module.def("load_calibration", load_calibration, py::arg("file"), py::arg("camera"));
 }

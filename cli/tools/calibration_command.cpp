@@ -283,10 +283,6 @@ Report report_on_calibration(const CalibrationSurvey& survey) {
     return report;
 }
 
-namespace {
-
-/// Whether a file declares itself a scene: some line begins with "uwvdb:". A file that cannot be
-/// read is left to the reader.
 bool is_scene(const std::filesystem::path& file) {
     constexpr std::streamsize k_look = 1 << 16;
     std::string text(k_look, '\0');
@@ -295,6 +291,8 @@ bool is_scene(const std::filesystem::path& file) {
     text.resize(static_cast<std::size_t>(stream.gcount()));
     return text.starts_with("uwvdb:") || text.find("\nuwvdb:") != std::string::npos;
 }
+
+namespace {
 
 /// `bands_nm`: those of a scene, in any order.
 Calibration read_subject(const CalibrationArguments& a, std::vector<double>& bands_nm) {

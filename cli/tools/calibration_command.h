@@ -47,6 +47,10 @@ CalibrationSurvey survey_calibration(const std::filesystem::path& file,
 /// The report as text for people (ASCII) or as JSON for programs (docs/command-line.md).
 Report report_on_calibration(const CalibrationSurvey& survey);
 
+/// Whether a file declares itself a scene: some line begins with "uwvdb:". A file that cannot be
+/// read is left to the reader.
+bool is_scene(const std::filesystem::path& file);
+
 /// `uwvdb calibration` as the command line knows it.
 Command calibration_command();
 

@@ -26,6 +26,7 @@
 #include <cstdint>
 #include <exception>
 #include <fstream>
+#include <functional>
 #include <istream>
 #include <limits>
 #include <new>
@@ -448,9 +449,11 @@ void check_exr(const Imf::Header& header, std::span<const std::string> channels,
         throw InputError(name + ": its tiles are larger than the image; the file is damaged");
 }
 
-}  // namespace
+using ChannelChoice = std::function<std::vector<std::string>(const Imf::ChannelList& all)>;
 
-PixelImage read_exr(std::span<const std::byte> encoded, const std::string& name) {
+/// Decodes the channels that `choose` picks, which the file has.
+PixelImage read_chosen(std::span<const std::byte> encoded, const std::string& name,
+                       const ChannelChoice& choose) {
     const auto refuse = [&](std::string_view what) -> InputError {
         return InputError(fmt::format("{}: cannot read the OpenEXR image: {}; save it again", name,
                                       what.substr(0, what.find('\n'))));
@@ -465,7 +468,7 @@ PixelImage read_exr(std::span<const std::byte> encoded, const std::string& name)
         constexpr bool k_restore_offsets = false;
         Imf::MultiPartInputFile input(memory, k_no_threads, k_restore_offsets);
         const Imf::Header& header = input.header(0);
-        const std::vector<std::string> channels = channels_to_read(header.channels());
+        const std::vector<std::string> channels = choose(header.channels());
         check_exr(header, channels, encoded.size(), name);
         const Imath::Box2i& window = header.dataWindow();
         PixelImage image{window.max.x - window.min.x + 1,
@@ -493,6 +496,22 @@ PixelImage read_exr(std::span<const std::byte> encoded, const std::string& name)
     } catch (const std::bad_alloc&) {
         throw refuse("it takes more memory than there is");
     }
+}
+
+}  // namespace
+
+PixelImage read_exr(std::span<const std::byte> encoded, const std::string& name) {
+    return read_chosen(encoded, name, channels_to_read);
+}
+
+PixelImage read_exr_channel(
+    std::span<const std::byte> encoded, const std::string& name,
+    const std::function<std::string(const std::vector<std::string>& channels)>& choose) {
+    return read_chosen(encoded, name, [&](const Imf::ChannelList& all) {
+        std::vector<std::string> names;
+        for (auto at = all.begin(); at != all.end(); ++at) names.emplace_back(at.name());
+        return std::vector<std::string>{choose(names)};
+    });
 }
 
 std::optional<ExrHeader> read_exr_header(const std::filesystem::path& file) {

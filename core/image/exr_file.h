@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -76,6 +77,11 @@ bool exr_attributes_fit(const std::filesystem::path& file);
 /// and alpha if there is one. Values are as they are in the file. Messages call it `name`. Throws
 /// InputError if it is damaged or too large, if it is deep, or if not all of it is stored.
 PixelImage read_exr(std::span<const std::byte> encoded, const std::string& name);
+
+/// The same for the channel that `choose` picks from the names of all, in alphabetical order.
+PixelImage read_exr_channel(
+    std::span<const std::byte> encoded, const std::string& name,
+    const std::function<std::string(const std::vector<std::string>& channels)>& choose);
 
 /// The header of an OpenEXR file of one part, stored by scanlines from the top.
 struct ExrHeader {

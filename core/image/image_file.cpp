@@ -45,9 +45,12 @@ std::vector<std::byte> read_encoded(std::ifstream in, const std::filesystem::pat
 
 }  // namespace
 
+std::vector<std::byte> read_image_bytes(const std::filesystem::path& file) {
+    return read_encoded(open_input(file, file.string(), "image file"), file);
+}
+
 PixelImage read_image(const std::filesystem::path& file) {
-    const std::string name = file.string();
-    return read_image(read_encoded(open_input(file, name, "image file"), file), name);
+    return read_image(read_image_bytes(file), file.string());
 }
 
 PixelImage read_own_image(const std::filesystem::path& file) {
@@ -55,8 +58,7 @@ PixelImage read_own_image(const std::filesystem::path& file) {
 }
 
 PixelImage read_linear_image(const std::filesystem::path& file) {
-    const std::vector<std::byte> encoded =
-        read_encoded(open_input(file, file.string(), "image file"), file);
+    const std::vector<std::byte> encoded = read_image_bytes(file);
     const std::optional<ImageFormat> format = other_image_format(encoded, file.string());
     PixelImage image;
     if (format) image = read_other_image(encoded, *format, file.string(), ImageRange::any);

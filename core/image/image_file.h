@@ -14,6 +14,10 @@
 
 namespace uw {
 
+/// The bytes of an image file, as read_image decodes them. Throws as open_input; InputError if it
+/// is larger than 2 GB.
+std::vector<std::byte> read_image_bytes(const std::filesystem::path& file);
+
 /// Reads a PNG or JPEG file, or another by a module (core/image/image_formats.h). Throws as
 /// open_input; InputError if it is none of these, is truncated or damaged, or is larger than 2^28
 /// pixels.

@@ -144,6 +144,58 @@ def test_vdb_files():
         uwvdb.inspect(PORT)
 
 
+def test_written_vdb_files_are_the_arrays(scene, renderer, tmp_path):
+    file = tmp_path / "smoke.vdb"
+    rng = np.random.default_rng(3)
+    smoke = np.zeros((21, 14, 9))
+    smoke[2:20, 1:13, :] = rng.uniform(0.1, 1, (18, 12, 9))
+    heat = rng.uniform(300, 400, (8, 8, 8)).astype(np.float32)
+    uwvdb.write_vdb(file, {"density": smoke, "heat": heat[::-1]}, voxel_size=0.1,
+                    origin=(-1, -0.6, 1.2))
+    found = {grid["name"]: grid for grid in uwvdb.inspect(file)["grids"]}
+    assert found["density"]["active_voxels"] == 18 * 12 * 9
+    assert np.allclose(found["heat"]["voxel_size"], 0.1)
+    # The box of the values that are not 0, to the bit as 32-bit floats.
+    density = uwvdb.read_vdb(file, "density")
+    assert np.array_equal(density.values, smoke[2:20, 1:13, :].astype(np.float32))
+    assert np.allclose(density.origin, (-0.8, -0.5, 1.2), atol=1e-12)
+    heated = uwvdb.read_vdb(file, "heat")
+    assert np.array_equal(heated.values, heat[::-1])
+    assert np.allclose(heated.origin, (-1, -0.6, 1.2), atol=1e-12)
+    # A scene shows the same volume of the file and of the array.
+    of_file, of_array = scene.copy(), scene.copy()
+    of_file["volumes"] = [{"file": str(file), "grids": {"density": {"large": 10}}}]
+    of_array.volumes.add(smoke, voxel_size=0.1, origin=(-1, -0.6, 1.2),
+                         concentration={"large": 10})
+    seen, expected, empty = (renderer.render(each, ["transmittance"])["transmittance"]
+                             for each in (of_file, of_array, scene))
+    # Blocks of 8^3 are quantised by themselves, to 1/131070 of their range, and begin elsewhere.
+    assert np.allclose(seen, expected, rtol=2e-5)
+    assert not np.allclose(seen, empty, rtol=0.05)
+    other = tmp_path / "one.vdb"
+    uwvdb.write_vdb(other, np.ones((2, 2, 2), np.uint8), 1, name="one")
+    assert uwvdb.read_vdb(other).name == "one"
+
+
+def test_write_vdb_refuses_what_is_no_grid(tmp_path):
+    file = tmp_path / "bad.vdb"
+    ones = np.ones((3, 3, 3))
+    broken = ones.copy()
+    broken[0, 1, 2] = np.nan
+    for arguments, message in (((ones[0], 1), "three axes"), ((broken, 1), r"at \[0, 1, 2\]"),
+                               ((ones, 0), "above 0"), ((ones, (1, 1, 2)), "above 0"),
+                               ((ones * 1j, 1), "real numbers"),
+                               (({}, 1), "no array"), ((ones, 1, (0, np.inf, 0)), "finite")):
+        with pytest.raises(uwvdb.UsageError, match=message):
+            uwvdb.write_vdb(file, *arguments)
+    with pytest.raises(uwvdb.UsageError, match="ends in .vdb"):
+        uwvdb.write_vdb(tmp_path / "smoke", ones, 1)
+    assert not list(tmp_path.iterdir())
+    (tmp_path / "folder.vdb").mkdir()
+    with pytest.raises(uwvdb.IoError):
+        uwvdb.write_vdb(tmp_path / "folder.vdb", ones, 1)
+
+
 OPENCV = """\
 %YAML:1.0
 image_width: 640
