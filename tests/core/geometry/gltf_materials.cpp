@@ -234,8 +234,7 @@ TEST_F(GltfMaterials, TransmissionIsGlass) {
     ASSERT_EQ(warnings.size(), 1U);
     EXPECT_NE(warnings[0].find("the base colour of solid glass"), std::string::npos) << warnings[0];
     warnings.clear();
-    EXPECT_FALSE(
-        glass_of(R"("KHR_materials_transmission":{"transmissionFactor":0.3})", &warnings));
+    EXPECT_FALSE(glass_of(R"("KHR_materials_transmission":{"transmissionFactor":0.3})", &warnings));
     ASSERT_EQ(warnings.size(), 1U);
     EXPECT_NE(warnings[0].find("transmission below 0.5"), std::string::npos) << warnings[0];
 }
