@@ -146,11 +146,13 @@ def test_what_cannot_be_shown_is_named_once():
     scene.frame_start, scene.frame_end = 1, 2
     scene.world.use_nodes = True
     scene.world.node_tree.nodes.new("ShaderNodeBackground")
-    square(location=(0, 3, 0)).data.materials.append(material("Glass", shader="ShaderNodeBsdfGlass")[0])
+    frosted, _, _, shader = material("Frosted", shader="ShaderNodeBsdfGlass")
+    shader.inputs["Roughness"].default_value = 0.5
+    square(location=(0, 3, 0)).data.materials.append(frosted)
     light("SUN")
     render()
     told = " | ".join(notes())
-    for words in ("background gives no light", "'Glass': lets all light through", "needs the place where the water"):
+    for words in ("background gives no light", "'Frosted': rough glass is shown as smooth", "needs the place where the water"):
         assert words in told, (words, told)
 
 
