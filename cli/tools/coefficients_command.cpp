@@ -178,8 +178,8 @@ Report coefficient_report(const std::string& title, const TargetSeriesSet& set,
         }
     }
     // More columns than a terminal has are for --csv and --json.
-    constexpr std::size_t k_most_columns = 1 + 3 * 3;
-    if (rows[0].size() <= k_most_columns)
+    constexpr std::size_t k_max_columns = 1 + 3 * 3;
+    if (rows[0].size() <= k_max_columns)
         for (const std::string& row : aligned_rows(rows, 0)) report.say(row);
     if (set.error)
         report.say(fmt::format("standard error of a rendering: up to {:.2g} %", 100 * *set.error));

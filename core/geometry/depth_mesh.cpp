@@ -95,7 +95,7 @@ class MeshBuilder {
     }
 
     std::uint32_t add_vertex(const DepthPixel& owner, double x, double y, double inverse_depth) {
-        // Of a lens that ends within the pixel its centre alone has a ray.
+        // Where a lens ends within the pixel, only its centre has a ray.
         const Vector3 ray = ray_(x, y).value_or(rays_(owner.x, owner.y));
         const auto number = static_cast<std::uint32_t>(mesh_.positions.size() / 3);
         for (int axis = 0; axis < 3; ++axis)

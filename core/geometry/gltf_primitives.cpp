@@ -115,13 +115,12 @@ std::optional<FileGlass> GltfMaterials::read_glass(const Json& json, const Rgb& 
     if (!is_gltf_glass(transmission)) return std::nullopt;
     // Any length does; the absorption of a pane is that of its thickness.
     constexpr double k_pane = 1e-3;
-    constexpr double k_least_fraction = 1e-6;
+    constexpr double k_min_fraction = 1e-6;
     const auto absorption_of = [&](const Rgb& left, double distance) {
         Rgb absorption;
         for (std::size_t k = 0; k < 3; ++k)
             absorption[k] =
-                -std::log(std::clamp(static_cast<double>(left[k]), k_least_fraction, 1.0)) /
-                distance;
+                -std::log(std::clamp(static_cast<double>(left[k]), k_min_fraction, 1.0)) / distance;
         return absorption;
     };
     FileGlass glass;

@@ -82,23 +82,25 @@ double ImageProfile::relative_intensity(const Vector3& v) const {
 // By the midpoint rule between the lines through the pixels' centres, where the pattern is bilinear
 // and the solid angle of an area of the image, f / (f^2 + x^2 + y^2)^(3/2), nearly constant.
 double ImageProfile::solid_angle() const {
-    constexpr int k_min_steps = 512;
-    const int columns = 2 * pattern_->width(), rows = 2 * pattern_->height();  // half pixels
-    const int finer =
-        std::max(1, (k_min_steps + std::min(columns, rows) - 1) / std::min(columns, rows));
-    const double step = 0.5 / finer, square = focal_length_ * focal_length_;
+    const auto steps_for = [](int pixels) {
+        constexpr int k_min_steps = 512;
+        const int halves = 2 * pixels;
+        return halves * std::max(1, (k_min_steps + halves - 1) / halves);
+    };
+    const double width = pattern_->width(), height = pattern_->height();
+    const int columns = steps_for(pattern_->width()), rows = steps_for(pattern_->height());
     double sum = 0;
-    for (int j = 0; j < rows * finer; ++j) {
-        const double y = (j + 0.5) * step, off_y = y - 0.5 * pattern_->height();
+    for (int j = 0; j < rows; ++j) {
+        const double y = (j + 0.5) / rows * height, off_y = y - 0.5 * height;
         double row = 0;
-        for (int i = 0; i < columns * finer; ++i) {
-            const double x = (i + 0.5) * step, off_x = x - 0.5 * pattern_->width();
-            const double squares = square + off_x * off_x + off_y * off_y;
+        for (int i = 0; i < columns; ++i) {
+            const double x = (i + 0.5) / columns * width, off_x = x - 0.5 * width;
+            const double squares = focal_length_ * focal_length_ + off_x * off_x + off_y * off_y;
             row += at(x, y) / (squares * std::sqrt(squares));
         }
         sum += row;
     }
-    return sum * focal_length_ * step * step;
+    return sum * focal_length_ * (width / columns) * (height / rows);
 }
 
 DirectionCone ImageProfile::cone() const {

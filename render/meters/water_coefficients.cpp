@@ -262,9 +262,9 @@ std::optional<FormulaFit> fit_formula(const std::vector<double>& ranges, const T
         return options.divides_falloff ? series.clean[i] : 1.0;
     };
     // Images are of single precision: less of the target's light is rounding of the backscatter.
-    constexpr double k_least_signal = 1e-5;
+    constexpr double k_min_signal = 1e-5;
     const auto tells = [&](std::size_t i) {
-        return clean(i) > 0 && series.signal[i] > k_least_signal * series.backscatter[i];
+        return clean(i) > 0 && series.signal[i] > k_min_signal * series.backscatter[i];
     };
     const auto decay = [&](std::size_t i) { return std::log(series.signal[i] / clean(i)); };
     double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "core/base/error.h"
 #include "core/base/numerics.h"
@@ -62,11 +63,15 @@ TEST(ImageProfile, HasItsPixelsWhereACameraWouldSeeThem) {
 
 TEST(ImageProfile, SolidAngleIsTheIntegral) {
     for (const double fov : {20.0, 100.0}) {
-        // Of a white one in closed form: a rectangle seen from its axis.
-        const ImageProfile white({"", fov, 0}, {}, pattern(16, 8, [](int, int) { return 1.0F; }));
-        const double x = std::tan(std::numbers::pi / 360 * fov), y = 0.5 * x;
-        const double sides = std::sqrt((1 + x * x) * (1 + y * y));
-        EXPECT_NEAR(white.solid_angle() / (4 * std::asin(x * y / sides)), 1, 1e-5) << fov;
+        // A white one is a rectangle seen from its axis, which has a closed form. One row of many
+        // pixels is that of a line scanner.
+        for (const auto& [width, height] : {std::pair(16, 8), {20000, 1}}) {
+            const ImageProfile white({"", fov, 0}, {},
+                                     pattern(width, height, [](int, int) { return 1.0F; }));
+            const double x = std::tan(std::numbers::pi / 360 * fov), y = x * height / width;
+            const double sides = std::sqrt((1 + x * x) * (1 + y * y));
+            EXPECT_NEAR(white.solid_angle() / (4 * std::asin(x * y / sides)), 1, 1e-5) << fov;
+        }
         const ImageProfile image({"", fov, 0}, {}, pattern(64, 32, smooth));
         EXPECT_NEAR(image.solid_angle() / solid_angle_by_quadrature(image, 3000, 3000), 1, 1e-3);
     }
