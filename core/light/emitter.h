@@ -22,13 +22,6 @@ struct Sunlight;
 /// of a point source would grow without bound [m].
 inline constexpr double k_lamp_radius = 1e-3;
 
-/// What of an emitter's light is narrower than its cone, so that rays a few pixels apart may miss
-/// it.
-struct FineStructure {
-    bool is_everywhere = false;     // the light is a pattern
-    std::optional<Vector3> normal;  // unit; it is a sheet, thin when seen along its plane
-};
-
 /// A source of light without an extent, in the world. The light that reaches x comes in a straight
 /// line from origin(x), R away, and its irradiance on a plane perpendicular to it would be
 /// I * relative_intensity(x - origin(x)) * focus(x) / spread(R) without water. The factor I is not
@@ -73,6 +66,7 @@ class Emitter {
     virtual bool is_soft() const { return false; }
     /// A cone outside which it emits no light.
     virtual DirectionCone cone() const = 0;
+    /// What in that cone is narrow.
     virtual FineStructure fine_structure() const { return {}; }
     /// The part of the interval `interval` of `ray` outside which it emits no light; of length 0
     /// where it misses the beam. It may still contain dark parts.

@@ -33,6 +33,8 @@ class ImageProfile {
     void append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                        std::vector<double>& s) const;
 
+    FineStructure fine_structure() const { return {true, std::nullopt}; }
+
     friend bool operator==(const ImageProfile& a, const ImageProfile& b);
 
   private:

@@ -267,6 +267,12 @@ LampProfile softened(const LampProfile& profile, const Vector3& offset, const Ma
 ///   `interval` the profile of a lamp at `apex` is smooth and changes little, as compared with
 ///   where it is brightest in that interval: the edges of its beam and cones of equal intensity
 ///   inside. SoftSpotProfile may end between two of them.
+///
+/// Profiles of which a cone says too little have one or both of
+///
+/// - beam(ray, interval, apex): the part of an interval inside the cone outside which the profile
+///   of a lamp at `apex` is dark.
+/// - fine_structure(): what is narrower than the cone.
 template <class P>
 concept IsALampProfile = requires(const P& profile, const Vector3& v, const Ray& ray,
                                   const Interval& interval, const Point3& apex,

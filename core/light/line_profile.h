@@ -27,10 +27,8 @@ class LineProfile {
     void append_breaks(const Ray& ray, const Interval& interval, const Point3& apex,
                        std::vector<double>& s) const;
 
-    /// The part of `interval` of `ray` outside which a lamp at `apex` is dark.
     Interval beam(const Ray& ray, const Interval& interval, const Point3& apex) const;
-    /// That of its plane, unit.
-    const Vector3& normal() const { return normal_; }
+    FineStructure fine_structure() const { return {false, normal_}; }
 
     friend bool operator==(const LineProfile&, const LineProfile&) = default;
 

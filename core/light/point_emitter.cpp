@@ -54,14 +54,24 @@ DirectionCone PointEmitter::cone() const {
 }
 
 Interval PointEmitter::beam(const Ray& ray, const Interval& interval) const {
-    const Interval in_cone = beam_of(cone(), position_, ray, interval);
-    const auto* line = std::get_if<LineProfile>(&profile_);
-    return line != nullptr ? line->beam(ray, in_cone, position_) : in_cone;
+    const auto beam_of_profile = [&](const auto& profile) {
+        const Interval in_cone = beam_of(profile.cone(), position_, ray, interval);
+        if constexpr (requires { profile.beam(ray, in_cone, position_); })
+            return profile.beam(ray, in_cone, position_);
+        else
+            return in_cone;
+    };
+    return std::visit(beam_of_profile, profile_);
 }
 
 FineStructure PointEmitter::fine_structure() const {
-    if (const auto* line = std::get_if<LineProfile>(&profile_)) return {false, line->normal()};
-    return {std::holds_alternative<ImageProfile>(profile_), std::nullopt};
+    const auto fine_structure_of = [](const auto& profile) -> FineStructure {
+        if constexpr (requires { profile.fine_structure(); })
+            return profile.fine_structure();
+        else
+            return {};
+    };
+    return std::visit(fine_structure_of, profile_);
 }
 
 void PointEmitter::append_profile_breaks(const Ray& ray, const Interval& interval,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "core/base/ray.h"
@@ -51,6 +52,12 @@ struct DirectionCone {
     /// All directions within `angle` [rad] of a direction in this cone.
     DirectionCone widened(double angle) const;
     bool includes(const DirectionCone& other) const;
+};
+
+/// What of a profile is narrower than its cone, so that rays a few pixels apart may miss its light.
+struct FineStructure {
+    bool is_everywhere = false;     // the light is a pattern
+    std::optional<Vector3> normal;  // unit; it is a sheet, thin when seen along its plane
 };
 
 /// Crossings of a ray with the surfaces at which a lamp's profile may have breaks, all through the

@@ -160,7 +160,7 @@ class RadianceEstimate {
 
     /// `with_sky`: whether to include the radiance of the sky, for which beams are used otherwise.
     Spectrum operator()(Ray ray, std::uint64_t seed, std::uint32_t index, bool with_sky = false) {
-        constexpr int k_max_mirrors = 8;  // a plane surface has one; glass has more
+        constexpr int k_max_mirrors = 64;  // a plane surface has one; glass has more
         Spectrum radiance{}, throughput = per_band(bands_, [](std::size_t) { return 1.0; });
         for (int mirrors = 0; mirrors < k_max_mirrors; ++mirrors) {
             SurfaceSample sample{ray, {}, 0, 0};
