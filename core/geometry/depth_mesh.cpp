@@ -172,7 +172,7 @@ class MeshBuilder {
         for (std::size_t i = 0; i < 4; ++i) corners[i] = centres_(pixels[i].x, pixels[i].y);
         // Along the diagonal on which depths differ less.
         if (jump(at(pixels[0]), at(pixels[2])) > jump(at(pixels[1]), at(pixels[3])))
-            std::ranges::rotate(corners, corners.begin() + 1);
+            std::rotate(corners.begin(), corners.begin() + 1, corners.end());
         add_fan(corners);
     }
 
