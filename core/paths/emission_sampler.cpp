@@ -184,7 +184,7 @@ void EmissionSampler::fill_cells(const LitScene& scene, Volume& volume) {
 void EmissionSampler::add_faint_edge(Volume& volume) {
     const std::vector<Cell> cells = volume.cells;
     const auto [nx, ny, nz] = volume.count;
-    const auto at = [&](int i, int j, int k) {
+    const auto at = [nx = nx, ny = ny](int i, int j, int k) {
         return static_cast<std::size_t>((k * ny + j) * nx + i);
     };
     for (int k = 0; k < nz; ++k)

@@ -48,7 +48,7 @@ SceneDesc scene_of(const LampTableRow& row) {
     LampDesc lamp;
     lamp.name = "lamp";
     const double angle = row.angle * std::numbers::pi / 180;
-    lamp.position = Point3(row.distance * std::sin(angle), 0, row.distance * std::cos(angle));
+    lamp.position = {row.distance * std::sin(angle), 0, row.distance * std::cos(angle)};
     lamp.intensity = PerBand{1};
     desc.lamps = {lamp};
     desc.render.integrator = RenderDesc::Integrator::path;
