@@ -27,6 +27,9 @@ constexpr int k_positions = 32;
 // Maximum motion in a part of the exposure [pixels], and maximum number of parts.
 constexpr double k_surface_step = 0.5, k_light_step = 2, k_view_step = 4;
 constexpr int k_max_parts = 64;
+// Maximum motion from one moment of multiple scattering to the next, relative to the image's
+// height: about twice the distance of its nodes.
+constexpr double k_moment_step = 0.04;
 // Samples per pixel of motion blur, as many as for that of an aperture.
 constexpr int k_samples = 64;
 
@@ -214,6 +217,10 @@ void Exposure::divide(int samples) {
     parts = std::min(parts, static_cast<double>(k_max_parts));
     if (fraction > 0) parts = std::min(parts, max_in_a_row / fraction);
     parts_ = std::max(1, static_cast<int>(std::ceil(parts)));
+    // The camera's rows have their own poses whatever the moment.
+    const double moves = std::max({view_pixels_ * fraction, surface_pixels_, light_pixels_});
+    moments_ =
+        std::clamp(static_cast<int>(std::ceil(moves / (k_moment_step * rows_.height))), 1, parts_);
     samples_of_part_ = samples;
     if (rows_.shutter > 0)
         samples_of_part_ =
@@ -231,9 +238,9 @@ double Exposure::bound(int part) const {
     return part == parts_ ? all.end : all.begin + part * all.length() / parts_;
 }
 
-RowExposure Exposure::rows_of(int part) const {
+RowExposure Exposure::rows_of(int first, int end) const {
     RowExposure rows = rows_;
-    rows.part = {bound(part), bound(part + 1)};
+    rows.part = {bound(first), bound(end)};
     return rows;
 }
 
@@ -242,8 +249,7 @@ bool Exposure::has_middle(int part, int row) const {
     return middle >= bound(part) && middle < bound(part + 1);
 }
 
-AssembledScene Exposure::part(int part, SceneCache& cache) const {
-    const RowExposure rows = rows_of(part);
+AssembledScene Exposure::scene_of(const RowExposure& rows, SceneCache& cache) const {
     const ImageScene& now = scene_.image;
     ImageScene then = now.at(*now.time() + rows.part.middle()).with([&](SceneDesc& desc) {
         desc.render.samples = samples_of_part_;
@@ -252,11 +258,22 @@ AssembledScene Exposure::part(int part, SceneCache& cache) const {
     });
     auto camera = camera_ ? std::make_unique<Camera>(then.desc().camera, camera_, rows)
                           : std::make_unique<Camera>(then.desc().camera);
-    AssembledScene scene = with_moved(scene_, std::move(then), std::move(camera), cache);
+    return with_moved(scene_, std::move(then), std::move(camera), cache);
+}
+
+AssembledScene Exposure::part(int part, SceneCache& cache) const {
+    AssembledScene scene = scene_of(rows_of(part), cache);
     if (rows_.shutter == 0) return scene;
     scene.total_samples = parts_ * samples_of_part_;
     scene.first_sample = part * samples_of_part_;
     return scene;
+}
+
+std::optional<AssembledScene> Exposure::moment_from(int part, SceneCache& cache) const {
+    for (int m = 0; m < moments_ && moments_ < parts_; ++m)
+        if (m * parts_ / moments_ == part)
+            return scene_of(rows_of(part, (m + 1) * parts_ / moments_), cache);
+    return std::nullopt;
 }
 
 namespace {
@@ -330,12 +347,22 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
         passes.run(Pass::Of::truth, truth);
     };
     const bool truth_differs = exposure.is_rolling() && exposure.moves_surfaces();
+    bool is_shared = false;
     for (int k = 0; k < parts; ++k) {
         const StageProgressCallback tell = [&](Stage stage, double fraction) {
             rendering.progress(Stage::render, (k + fraction_of_pixels(stage, fraction)) / parts);
         };
         tell(Stage::render, 0);
         throw_if_stopped();
+        if (const auto moment = exposure.moment_from(k, cache)) {
+            is_shared = true;
+            const DeepShadows light = light_of_part(*moment);
+            const LightTransport transport = make_light_transport(*moment, light, needs.paths);
+            ImageProgress none;
+            Rendering middle = make_rendering(*moment, *moment->camera, transport, light,
+                                              {plan, rendering.colour, film, tell, none});
+            passes.share(middle);
+        }
         const AssembledScene part = exposure.part(k, cache);
         const DeepShadows light = light_of_part(part);
         const LightTransport transport = make_light_transport(part, light, needs.paths);
@@ -345,6 +372,7 @@ void render_exposure(const Exposure& exposure, const AssembledScene& scene, Scen
             ImageProgress reached;
             Rendering of_part = make_rendering(part, *part.camera, transport, light,
                                                {plan, rendering.colour, image, tell, reached});
+            of_part.is_shared = is_shared;
             run_light_passes(part, passes, of_part);
             reached_by_parts.add(reached);
             mean.add(image, [&](int row) { return exposure.fraction(k, row); });

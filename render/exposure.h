@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "camera/camera.h"
@@ -15,6 +16,10 @@ namespace uw {
 /// shutter is open and, with a rolling shutter, that of all rows. It is divided into parts of equal
 /// length. The image of a part has the light and the surfaces of the part's middle, while the
 /// camera moves from sample to sample; the frame's image is the mean over the parts (ExposureMean).
+///
+/// Light that was scattered more than once varies slowly: it is traced at a few moments of the
+/// exposure, whose parts share it (Pass::share). From one moment to the next nothing moves by more
+/// than a fraction of the image's height.
 ///
 /// There are so many parts that what is taken as still in a part moves by no more than a few pixels
 /// in the image: surfaces by half a pixel, the light of lamps by two, the water in front of a
@@ -38,6 +43,9 @@ class Exposure {
 
     /// Assembles the scene of part `part`, counted from 0.
     AssembledScene part(int part, SceneCache& cache) const;
+    /// If `part` is the first of those around a moment, assembles the scene of that moment. None if
+    /// each part has a moment of its own.
+    std::optional<AssembledScene> moment_from(int part, SceneCache& cache) const;
     /// The fraction of the exposure of pixel row `row` that belongs to a part.
     double fraction(int part, int row) const { return rows_of(part).fraction(row); }
     /// Whether the part contains the middle of the row's exposure, the time of its ground truth.
@@ -45,7 +53,9 @@ class Exposure {
 
   private:
     double bound(int part) const;
-    RowExposure rows_of(int part) const;
+    RowExposure rows_of(int part) const { return rows_of(part, part + 1); }
+    RowExposure rows_of(int first, int end) const;
+    AssembledScene scene_of(const RowExposure& rows, SceneCache& cache) const;
     void measure(const std::vector<ImageScene>& moments);
     void divide(int samples);
 
@@ -54,6 +64,7 @@ class Exposure {
     std::shared_ptr<const CameraMotion> camera_;  // null if it does not move
     bool moves_surfaces_ = false;
     int parts_ = 0, samples_of_part_ = 1;
+    int moments_ = 1;  // at most as many as parts
     // The maximum distances in the image over the whole exposure [pixels]: of points at rest by the
     // camera's motion, and of surfaces and of the light of lamps, with the camera at rest.
     double view_pixels_ = 0, surface_pixels_ = 0, light_pixels_ = 0;

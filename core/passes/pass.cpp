@@ -9,6 +9,7 @@ PassNeeds Pass::needs(const LayerPlan& /*plan*/) const {
 }
 void Pass::provide(LayerSupply& /*supply*/) const {}
 void Pass::prepare(const SceneDesc& /*scene*/, const LayerPlan& /*plan*/) {}
+void Pass::share(Rendering& /*middle*/) {}
 void Pass::begin(Rendering& /*rendering*/) {}
 void Pass::end(Rendering& /*rendering*/) {}
 
@@ -32,6 +33,11 @@ PassNeeds PassList::needs(const LayerPlan& plan) const {
 
 void PassList::prepare(const SceneDesc& scene, const LayerPlan& plan) {
     for (const auto& pass : passes_) pass->prepare(scene, plan);
+}
+
+void PassList::share(Rendering& middle) {
+    for (const auto& pass : passes_)
+        if (pass->of() == Pass::Of::light) pass->share(middle);
 }
 
 void PassList::run(Pass::Of of, Rendering& rendering) {

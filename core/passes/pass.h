@@ -101,6 +101,8 @@ struct Rendering : ImageTarget {
     const SnowModel* snow;  // null without snow
     /// Selects the rows for which TruthPass finds ground truth; empty: all rows.
     std::function<bool(int row)> has_truth{};
+    /// Whether it takes what its passes share (Pass::share).
+    bool is_shared = false;
     /// In the order in which they are applied to a pixel, before it is stored.
     std::vector<PixelStep> steps{};
 };
@@ -142,6 +144,9 @@ class Pass {
     virtual void provide(LayerSupply& supply) const;
     /// Reads the files that the pass needs for these layers, before anything else is loaded.
     virtual void prepare(const SceneDesc& scene, const LayerPlan& plan);
+    /// Computes what the images that follow share if they are `is_shared`: the parts of an exposure
+    /// around the moment of `middle`, until this is called again. Throws as run.
+    virtual void share(Rendering& middle);
     /// Adds the pass's step to the rendering, if it has one. All passes begin before the first one
     /// is run.
     virtual void begin(Rendering& rendering);
@@ -169,6 +174,8 @@ class PassList {
     PassNeeds needs(const LayerPlan& plan) const;
     /// Prepares all passes.
     void prepare(const SceneDesc& scene, const LayerPlan& plan);
+    /// Calls Pass::share of all passes of the light.
+    void share(Rendering& middle);
     /// Begins, runs and ends the passes of this kind. Progress 0 is reported for each stage before
     /// it begins.
     void run(Pass::Of of, Rendering& rendering);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -48,13 +49,16 @@ class SurfaceHalo {
     }
     /// Whether the water changes with depth, so that the halo is that of the mean water.
     bool is_of_mean_water() const { return mean_water_.has_value(); }
-    /// The light that the mean water scatters towards the camera up to a distance, if the radiance
-    /// is 1 everywhere: b (1 - e^(-c distance)) / c. Precondition: is_of_mean_water().
-    double scattered_by_mean_water(double distance, std::size_t band) const {
+    /// The fraction of the halo that a ray has whose water scatters `scattered` of uniform light
+    /// towards the camera up to a distance, relative to what the mean water scatters:
+    /// b (1 - e^(-c distance)) / c. 1 if the water is the same everywhere.
+    double fraction(double scattered, double distance, std::size_t band) const {
+        if (!mean_water_) return 1;
         const double c = mean_water_->attenuation[band];
         const double depth = c * distance;
-        return mean_water_->scattering[band] *
-               (depth > 1e-6 ? (1 - std::exp(-depth)) / c : distance);
+        const double mean =
+            mean_water_->scattering[band] * (depth > 1e-6 ? (1 - std::exp(-depth)) / c : distance);
+        return mean > 0 ? std::min(1.0, scattered / mean) : 1;
     }
     /// Adds `weight` times the mean halo of the pixel around an image position [pixels] to
     /// `radiance`, by channel, for rays up to `distance` [m].

@@ -1,5 +1,5 @@
 // ctest labels: unit analytic
-#include "core/passes/multiple_scattering_pass.h"
+#include "core/passes/weight_lattice.h"
 
 #include <gtest/gtest.h>
 
