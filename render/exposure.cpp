@@ -35,6 +35,7 @@ constexpr int k_samples = 64;
 
 std::vector<ImageScene> scenes_over(const ImageScene& scene, const TimeSpan& span, int count) {
     std::vector<ImageScene> scenes;
+    scenes.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i)
         scenes.push_back(scene.at(*scene.time() + span.begin + span.length() * i / (count - 1)));
     return scenes;
@@ -128,6 +129,7 @@ std::shared_ptr<const CameraMotion> camera_motion(const ImageScene& scene, const
     if (!moves) return nullptr;
     const Trajectory trajectory(poses, Interpolation::smooth);
     std::vector<Affine> table;
+    table.reserve(k_table_size);
     for (int i = 0; i < k_table_size; ++i)
         table.push_back(
             trajectory.at(span.begin + span.length() * i / (k_table_size - 1)).affine());

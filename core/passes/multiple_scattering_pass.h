@@ -28,6 +28,10 @@ class MultipleScatteringPass final : public Pass {
     /// `path_factor`: PathRequest::path_factor.
     explicit MultipleScatteringPass(double path_factor = 1);
     ~MultipleScatteringPass() override;
+    MultipleScatteringPass(const MultipleScatteringPass&) = delete;
+    MultipleScatteringPass(MultipleScatteringPass&&) = delete;
+    MultipleScatteringPass& operator=(const MultipleScatteringPass&) = delete;
+    MultipleScatteringPass& operator=(MultipleScatteringPass&&) = delete;
 
     PassNeeds needs(const LayerPlan& plan) const override;
     void provide(LayerSupply& supply) const override;
