@@ -178,6 +178,9 @@ class MultipleScattering {
     void add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
              PixelResult& result) const;
 
+    /// Rendering::multiple_up_to. Thread safe.
+    Spectrum light_of_water(const PixelView& view, double distance) const;
+
   private:
     struct Corner {
         const SmoothNode* node;
@@ -552,6 +555,20 @@ void MultipleScattering::add(const PixelView& view, const SurfaceLight& light,
         result.error[b] = result.pixel_factor * errors.of_band(b);
 }
 
+Spectrum MultipleScattering::light_of_water(const PixelView& view, double distance) const {
+    PixelView up_to;
+    up_to.x = view.x;
+    up_to.y = view.y;
+    up_to.distances = {distance};
+    up_to.weights = {1};
+    std::vector<double> light(estimator_.groups() * bands_, 0.0);
+    Errors errors;
+    add_water(up_to, light, errors);
+    Spectrum sum;
+    for (std::size_t k = 0; k < light.size(); ++k) sum[k % bands_] += light[k];
+    return sum;
+}
+
 namespace {
 
 // These give a standard error of less than 1 % where light crosses an optical depth of about one,
@@ -606,6 +623,9 @@ void MultipleScatteringPass::begin(Rendering& rendering) {
         light_->add(pixel.view, pixel.light, pixel.first_sample, pixel.result);
         sums_->add(pixel);
     });
+    rendering.multiple_up_to = [this](const PixelView& view, double distance) {
+        return light_->light_of_water(view, distance);
+    };
 }
 
 void MultipleScatteringPass::run(Rendering& rendering) {
