@@ -7,9 +7,10 @@
 #include <string_view>
 
 #include "core/base/output_files.h"
-#include "core/image/exr_file.h"
 
 namespace uw {
+
+struct ExrHeader;
 
 /// OpenEXR's way to an OutputFile, which keeps errors until it is committed.
 class ExrStream : public Imf::OStream {

