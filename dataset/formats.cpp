@@ -14,10 +14,10 @@ namespace uw {
 
 std::span<const DatasetFormat> dataset_formats() {
     static const std::array k_formats{
-        png_format(),    exr_format(),        depth_format(), mask_format(),      ids_format(),
-        clean_format(),  numpy_format(),      flow_format(),  disparity_format(), kitti_format(),
-        colmap_format(), nerfstudio_format(), tum_format(),   euroc_format(),     sensors_format(),
-        mcap_format(),   calibration_format()};
+        png_format(),     exr_format(),    depth_format(),      mask_format(), ids_format(),
+        plume_format(),   clean_format(),  numpy_format(),      flow_format(), disparity_format(),
+        kitti_format(),   colmap_format(), nerfstudio_format(), tum_format(),  euroc_format(),
+        sensors_format(), mcap_format(),   calibration_format()};
     return k_formats;
 }
 

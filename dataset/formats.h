@@ -94,6 +94,7 @@ DatasetFormat png_format();
 DatasetFormat depth_format();
 DatasetFormat mask_format();
 DatasetFormat ids_format();
+DatasetFormat plume_format();
 DatasetFormat clean_format();
 DatasetFormat exr_format();
 DatasetFormat numpy_format();

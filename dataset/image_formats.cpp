@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <string>
 
 #include "core/base/error.h"
@@ -187,6 +188,23 @@ DatasetFormat ids_format() {
                 "text `uwvdb/id_names`, which counts where meshes are one file for each frame.",
             .layers = "id",
             .write_view = write_ids};
+}
+
+DatasetFormat plume_format() {
+    return {.name = "plume",
+            .summary = "plume/: the opacity of the plume as a mask, 8-bit PNG",
+            .card =
+                "`plume/`: the opacity of the volumes' particles up to the surface behind them, "
+                "along the ray of the pixel's centre, as PNG of 8 bits: 255 where nothing is seen "
+                "through them, the mean of the bands.",
+            .layers = "plume.opacity",
+            .write_view = [](const ViewImages& images, SetFiles& files) {
+                const DigitalImage mask = grey_image(images, 8, [&](int x, int y) {
+                    return std::lround(255 * images.at(Layer::plume_opacity, x, y).front());
+                });
+                files.add("plume", images.definition.file(images.view, "plume", ".png"),
+                          [&](const auto& file) { write_png(file, mask, {}); });
+            }};
 }
 
 namespace {

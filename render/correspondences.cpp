@@ -61,6 +61,10 @@ Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& p
             next_.emplace(camera_of_truth(*next), motions_until(next->desc()),
                           finds_occluded ? surfaces_of(next->desc(), scene, cache) : nullptr);
     }
+    if (plan.has(Layer::plume_flow)) {
+        if (const auto next = neighbour(scene.image, 1))
+            plume_.emplace(scene, camera_of_truth(*next), 1 / now.render.fps);
+    }
     if (plan.has(Layer::flow_back)) {
         if (const auto previous = neighbour(scene.image, -1))
             previous_.emplace(camera_of_truth(*previous), motions_until(previous->desc()), nullptr);
@@ -76,7 +80,8 @@ PointMatchers Correspondences::matchers() const {
     const auto pointer = [](const std::optional<ViewMatcher>& matcher) {
         return matcher ? &*matcher : nullptr;
     };
-    return {pointer(next_), pointer(previous_), pointer(other_camera_), is_first_camera_};
+    return {pointer(next_), pointer(previous_), pointer(other_camera_), plume_ ? &*plume_ : nullptr,
+            is_first_camera_};
 }
 
 }  // namespace uw

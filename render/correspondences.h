@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image/layers.h"
+#include "render/plume_motion.h"
 #include "render/scene_assembly.h"
 #include "render/view_matcher.h"
 
@@ -20,7 +21,7 @@ class Correspondences {
   public:
     /// `scene` must outlive this object. The surfaces of the next frame are those of `scene` if
     /// none of them moves; otherwise `cache` builds them ahead. Throws as ImageScene,
-    /// build_surfaces and object_motions.
+    /// build_surfaces, object_motions and VolumeVelocity.
     Correspondences(const AssembledScene& scene, const LayerPlan& plan, SceneCache& cache);
 
     PointMatchers matchers() const;
@@ -28,6 +29,7 @@ class Correspondences {
 
   private:
     std::optional<ViewMatcher> next_, previous_, other_camera_;
+    std::optional<PlumeMotion> plume_;
     bool is_first_camera_ = true;
     std::vector<std::string> warnings_;
 };

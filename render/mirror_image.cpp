@@ -37,6 +37,10 @@ void run_light_passes(const AssembledScene& scene, PassList& passes, Rendering& 
     const bool has_mirror =
         scene.water_surface && MirroredView::may_see(rays, *scene.water_surface);
     if (has_mirror) check_mirrored(scene.desc());
+    if (has_mirror && rendering.deep != nullptr)
+        throw UsageError(
+            "--deep: the camera sees the water mirrored in its surface, at no distance of its own; "
+            "point the camera down, or leave out the surface");
     passes.run(Pass::Of::light, rendering);
     if (!has_mirror) return;
     const MirroredView view(rays, scene.lit());

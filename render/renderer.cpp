@@ -143,6 +143,8 @@ void Renderer::fit_film(const RenderOptions& options) {
         film_.emplace(camera.width, camera.height, rendered, plan_->channel_names());
     }
     is_film_clear_ = true;
+    deep_.reset();
+    if (options.deep > 0) deep_.emplace(camera.width, camera.height, rendered, options.deep);
 }
 
 void Renderer::prepare(const RenderOptions& options) {
@@ -160,6 +162,7 @@ void Renderer::prepare(const RenderOptions& options) {
         assemble();
     else
         build();
+    if (options.deep > 0) check_deep(*scene_);
     if (!colour_->warning().empty()) report_.warnings.push_back(colour_->warning());
     report_.warnings.insert(report_.warnings.end(), scene_->warnings.begin(),
                             scene_->warnings.end());
@@ -269,13 +272,21 @@ void Renderer::render_film(const RenderOptions& options, PassList& passes) {
         throw UsageError(
             "--error: is not known of an image in which something moves while the shutter is "
             "open; give --samples instead");
+    if (exposure.part_count() > 0 && options.deep > 0)
+        throw UsageError(
+            "--deep: something moves while the shutter is open, so that a pixel has no one place "
+            "for its light; give --set render.shutter=0, and no camera.line_time");
     const std::vector<ColourGroup> groups = colour_groups_of(scene_->desc());
+    if (groups.size() > 1 && options.deep > 0)
+        throw UsageError(
+            "--deep: the port bends each wavelength along its own way, but a deep pixel has one; "
+            "give the port the same indices at all wavelengths");
     report_.colour_groups = groups.size();
     const BandColour colour = groups.size() > 1 ? colour_->of(groups.front().bands) : *colour_;
     const StageProgressCallback progress = progress_of_group(0, groups.size());
-    Rendering rendering =
-        make_rendering(*scene_, *scene_->camera, transport, light_,
-                       {*plan_, colour, *film_, progress, report_}, others.matchers());
+    Rendering rendering = make_rendering(
+        *scene_, *scene_->camera, transport, light_,
+        {*plan_, colour, *film_, progress, report_, deep_ ? &*deep_ : nullptr}, others.matchers());
     render_light(exposure, *scene_, passes, rendering);
     render_other_groups(groups, options, passes);
     passes.run(Pass::Of::image, rendering);

@@ -23,6 +23,7 @@ struct RenderOptions {
     std::optional<PixelWindow> window{};  // the requested pixels; none: the whole image
     PathRequest paths{};                  // of its light paths
     std::int64_t frame = 0;               // its number, on which the sensor's noise depends
+    int deep = 0;  // the maximum of samples per pixel of its deep image; 0: none is made
     const LightTransport* transport = nullptr;  // instead of the scene's; not owned
 };
 
@@ -91,6 +92,9 @@ class Renderer {
     /// Precondition: nothing has been prepared since.
     Film release_film();
 
+    /// Releases the deep image that was rendered with it; none unless it was wanted.
+    std::optional<DeepImage> release_deep() { return std::exchange(deep_, std::nullopt); }
+
     /// The report on the image that was prepared or rendered last.
     const RenderReport& report() const { return report_; }
 
@@ -147,7 +151,8 @@ class Renderer {
     PixelWindow window_;                // the requested one
     std::optional<Film> film_;          // of the rendered window
     bool is_film_clear_ = false;
-    std::optional<Film> cropped_;  // the requested part of it, if that is smaller
+    std::optional<Film> cropped_;    // the requested part of it, if that is smaller
+    std::optional<DeepImage> deep_;  // of the requested window; none: not wanted
     RenderReport report_;
 };
 

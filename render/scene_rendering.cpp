@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "core/base/error.h"
 #include "core/base/troubleshooting.h"
 #include "core/light/integrator_table.h"
+#include "core/passes/deep_pass.h"
 #include "core/passes/forward_scatter_pass.h"
 #include "core/passes/glass_pass.h"
 #include "core/passes/multiple_scattering_pass.h"
@@ -47,14 +49,39 @@ PassList make_passes(const ImageScene& image, const PathRequest& paths, std::int
     if (!integrator_kind(render.integrator).traces_paths)
         passes.add<GlassPass>(paths_at_nodes(render));
     if (scene.water.snow) passes.add<SnowPass>(*scene.water.snow);
+    passes.add<DeepPass>();
     if (integrator_kind(render.integrator).traces_paths)
         passes.add<PathPass>(render, paths);
     else
         passes.add<PixelPass>(render);
     if (scene.water.forward_scatter.K > 0) passes.add<ForwardScatterPass>();
-    passes.add<TruthPass>(image.choice().frame.has_value(), scene.cameras.size() > 1);
+    const auto has_grids = [](const VolumeDesc& volume) { return !volume.grids.empty(); };
+    const auto moves = [&](const VolumeDesc& volume) { return has_grids(volume) && volume.motion; };
+    passes.add<TruthPass>(
+        TruthPass::Subjects{.frames = image.choice().frame.has_value(),
+                            .cameras = scene.cameras.size() > 1,
+                            .plume = std::ranges::any_of(scene.volumes, has_grids),
+                            .moving_plume = std::ranges::any_of(scene.volumes, moves)});
     if (scene.camera.sensor) passes.add<SensorPass>(*scene.camera.sensor, frame);
     return passes;
+}
+
+void check_deep(const AssembledScene& assembled) {
+    const SceneDesc& scene = assembled.desc();
+    const auto refuse = [](bool is_given, std::string_view what, std::string_view hint) {
+        if (is_given)
+            throw UsageError(fmt::format(
+                "--deep: the distances of its light are not known with {}; {}", what, hint));
+    };
+    const IntegratorKind& integrator = integrator_kind(scene.render.integrator);
+    refuse(integrator.traces_paths || integrator.sums_slabs, "this integrator",
+           "use --integrator volume");
+    refuse(scene.render.output == RenderDesc::Output::paper, "render.output: paper",
+           "use another output");
+    refuse(scene.water.forward_scatter.K > 0, "water.forward_scatter",
+           "give --set water.forward_scatter.K=0, or render.scattering=multiple");
+    refuse(scene.water.snow.has_value(), "water.snow", "leave the snow out");
+    refuse(assembled.glass != nullptr, "glass", "leave the surfaces of glass out");
 }
 
 LayerPlan layer_plan(const ImageScene& image, std::string_view request, const PathRequest& paths) {
@@ -108,12 +135,15 @@ Rendering make_rendering(const AssembledScene& scene, const RaySource& rays,
                          const LightTransport& transport,
                          std::span<const std::shared_ptr<const DeepShadow>> light,
                          const ImageTarget& target, const PointMatchers& matchers) {
-    return {target,
-            scene.desc(),
-            scene.image.time().value_or(0),
-            pixel_renderer(scene, rays, transport, in_scatter_parts(target.plan), matchers),
-            light,
-            scene.snow.get()};
+    PixelRenderer pixels =
+        pixel_renderer(scene, rays, transport, in_scatter_parts(target.plan), matchers);
+    constexpr std::array k_of_plume{Layer::plume_optical_depth, Layer::plume_opacity,
+                                    Layer::plume_range_50, Layer::plume_range_10,
+                                    Layer::plume_flow};
+    if (std::ranges::any_of(k_of_plume, [&](Layer layer) { return target.plan.has(layer); }))
+        pixels.find_plume();
+    return {target, scene.desc(),    scene.image.time().value_or(0), std::move(pixels),
+            light,  scene.snow.get()};
 }
 
 std::vector<ColourGroup> colour_groups_of(const SceneDesc& scene) {

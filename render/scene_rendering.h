@@ -21,6 +21,10 @@ namespace uw {
 PassList make_passes(const ImageScene& image, const PathRequest& paths = {},
                      std::int64_t frame = 0);
 
+/// Throws UsageError of one line if the light of an image of this scene is not known by distance,
+/// as DeepPass needs it.
+void check_deep(const AssembledScene& scene);
+
 /// Returns the layers of an image; `request` is that of LayerPlan. Throws as LayerPlan, and
 /// UsageError if `paths` is requested of an integrator that does not trace paths.
 LayerPlan layer_plan(const ImageScene& image, std::string_view request,

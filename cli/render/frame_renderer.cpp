@@ -147,7 +147,10 @@ WantedImage FrameRenderer::want(std::size_t place, ImageScene& scene) {
             fmt::format("{}its lamps are {}, but those of the first are {}; all images have the "
                         "same lights",
                         place_in_run(frame), fmt::join(lamps, ", "), fmt::join(lamps_, ", ")));
-    options_ = {.layers = arguments_.layers, .window = frame.window, .paths = arguments_.paths()};
+    options_ = {.layers = arguments_.layers,
+                .window = frame.window,
+                .paths = arguments_.paths(),
+                .deep = arguments_.deep.value_or(0)};
     if (!arguments_.numbers.empty()) {
         options_.layers = (options_.layers.empty() ? "default" : options_.layers) + "," +
                           layers_to_measure(scene) + (arguments_.parts.object.empty() ? "" : ",id");
@@ -263,8 +266,10 @@ std::vector<PartNumbers> FrameRenderer::measure(const FinishedImage& image) {
         picture_parts(arguments_.parts, scene, image.surfaces->names(), image.film, image.plan);
     std::vector<PartNumbers> numbers = part_numbers({image.film, image.plan}, parts);
     const std::size_t lamps = scene.lamps.size();
+    RenderOptions flat = options_;
+    flat.deep = 0;
     for (PartNumbers& of_lamp :
-         lamp_numbers(engine_.renderer(), *measured_, options_, parts, [&](std::size_t number) {
+         lamp_numbers(engine_.renderer(), *measured_, flat, parts, [&](std::size_t number) {
              stage_.reset();
              measuring_ = number == 0 ? "numbers without lamps"
                                       : fmt::format("numbers of lamp {} of {}", number, lamps);

@@ -34,6 +34,7 @@ std::vector<NamedFile> named(const OutputFiles& files) {
     if (!files.image.empty()) result.push_back({"the image", files.image});
     if (!files.preview.empty()) result.push_back({"the preview", files.preview});
     if (!files.sensor.empty()) result.push_back({"the camera's image", files.sensor});
+    if (!files.deep.empty()) result.push_back({"--deep", files.deep});
     if (!files.stats.empty()) result.push_back({"--stats", files.stats});
     if (!files.contact_sheet.empty()) result.push_back({"--contact-sheet", files.contact_sheet});
     if (!files.numbers.empty()) result.push_back({"--numbers", files.numbers});
@@ -83,6 +84,7 @@ void refuse_exr_options(const RenderArguments& a, const OutputFormat& format, bo
     refuse(!a.precision.empty() && format.holds != OutputFormat::Holds::either, "--precision");
     refuse(!a.compression.empty(), "--compression");
     refuse(a.is_aces, "--aces");
+    refuse(a.deep.has_value(), "--deep");
     refuse(a.resume, "--resume");
 }
 
@@ -97,6 +99,7 @@ void refuse_with_aces(const RenderArguments& a) {
     };
     refuse(!a.layers.empty(), "--layers");
     refuse(a.orders.has_value(), "--orders");
+    refuse(a.deep.has_value(), "--deep");
     refuse(!a.precision.empty(), "--precision");
     refuse(!a.compression.empty(), "--compression");
 }
@@ -152,6 +155,11 @@ fs::path sensor_image_beside(const fs::path& image, DevelopmentDesc::Format form
     return beside.replace_extension(std::string(k_sensor_ending) + ending);
 }
 
+fs::path deep_image_beside(const fs::path& image) {
+    fs::path beside = image;
+    return beside.replace_extension(".deep.exr");
+}
+
 OutputFiles output_files(const RenderArguments& a) {
     OutputFiles files;
     const char* const ending = a.frames.empty() ? ".exr" : ".####.exr";
@@ -172,6 +180,7 @@ OutputFiles output_files(const RenderArguments& a) {
         files.numbers = a.numbers;
     }
     if (!files.image.empty() && requests_ids(a.layers)) files.ids = id_table_beside(files.image);
+    if (a.deep) files.deep = deep_image_beside(files.image);
     files.irradiance_vdb = a.irradiance_vdb;
     if (!a.irradiance_vdb.empty())
         refuse_other_ending("--irradiance-vdb", a.irradiance_vdb, ".vdb", "OpenVDB");
@@ -244,6 +253,7 @@ void name_images(OutputFiles& files, std::string_view place, const std::string& 
     for (fs::path* file : {&files.image, &files.preview, &files.sensor})
         if (!file->empty()) *file = of_one(*file, place, name, word);
     if (!files.ids.empty()) files.ids = id_table_beside(files.image);
+    if (!files.deep.empty()) files.deep = deep_image_beside(files.image);
 }
 
 void refuse_place(const FrameSequence& sequence, std::string_view place, const char* why) {
@@ -316,6 +326,7 @@ FrameSequence frames_of(const RenderArguments& a) {
         files.preview = expanded(names.preview, number);
         files.sensor = expanded(names.sensor, number);
         if (!names.ids.empty()) files.ids = id_table_beside(files.image);
+        if (!names.deep.empty()) files.deep = deep_image_beside(files.image);
         if (one_each) files.stats = expanded(names.stats, number);
         files.irradiance_vdb = expanded(names.irradiance_vdb, number);
         sequence.frames.push_back({number, std::move(files), 0, "", {}, {}});
@@ -408,7 +419,7 @@ std::optional<fs::file_time_type> time_rendered(const Frame& frame) {
     const OutputFiles& files = frame.files;
     for (const fs::path* file : {&files.image, &files.preview})
         if (!is_file(*file)) return std::nullopt;
-    for (const fs::path* file : {&files.irradiance_vdb, &files.ids, &files.sensor})
+    for (const fs::path* file : {&files.irradiance_vdb, &files.ids, &files.sensor, &files.deep})
         if (!file->empty() && !is_file(*file)) return std::nullopt;
     std::error_code error;
     const fs::file_time_type time = fs::last_write_time(files.image, error);

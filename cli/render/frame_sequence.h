@@ -26,6 +26,7 @@ struct OutputFiles {
     std::filesystem::path stats;            // JSON; empty: none
     std::filesystem::path irradiance_vdb;   // empty: none
     std::filesystem::path numbers{};        // CSV about all images; empty: none
+    std::filesystem::path deep{};           // deep EXR; empty: none
     std::filesystem::path ids{};            // CSV of names; empty: no layer of numbers
     std::filesystem::path contact_sheet{};  // PNG of all images; empty: none
     std::filesystem::path manifest_csv{}, manifest_json{};  // of all variations; empty: none
@@ -44,6 +45,9 @@ inline constexpr std::string_view k_sensor_ending = ".sensor";
 /// The camera's image beside others: "out.sensor.png" beside "out.exr".
 std::filesystem::path sensor_image_beside(const std::filesystem::path& image,
                                           DevelopmentDesc::Format format);
+
+/// The deep image of another: "out.deep.exr" beside "out.exr".
+std::filesystem::path deep_image_beside(const std::filesystem::path& image);
 
 /// Whether a file of this name is written as OpenEXR.
 bool is_exr(const std::filesystem::path& file);

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/base/troubleshooting.h"
+#include "core/image/deep_exr_file.h"
 #include "core/image/image_file.h"
 #include "core/image/jpeg_file.h"
 #include "core/image/picture_file.h"
@@ -88,6 +89,9 @@ void write_images(const OutputFiles& files, const FinishedImage& image, const Im
     const double exposure = storage.exposure.value_or(automatic.value_or(1.0));
     const bool with_light = !files.image.empty();
     if (with_light) write_light_of(outputs.add(files.image), image, storage, !files.ids.empty());
+    if (!files.deep.empty())
+        write_deep_exr_file(outputs.add(files.deep), *image.deep, film.window(), image.metadata,
+                            storage.exr.compression);
     if (!files.ids.empty()) write_id_table(outputs.add(files.ids), image.surfaces->names());
     if (image.sensor)
         write_camera_image(outputs.add(files.sensor), *image.sensor, storage.camera,
@@ -107,6 +111,10 @@ void write_images(const OutputFiles& files, const FinishedImage& image, const Im
     warn_of_darkness(film.window(), empty, !automatic, warn);
     if (loss) warn_of_half(*loss, storage.exr, warn);
     if (with_light) say(fmt::format("wrote {}", files.image.string()));
+    if (!files.deep.empty())
+        say(fmt::format("wrote {} (deep: {:.1f} samples per pixel)", files.deep.string(),
+                        static_cast<double>(image.deep->sample_count()) /
+                            static_cast<double>(image.deep->pixel_count())));
     if (!files.ids.empty()) say(fmt::format("wrote {} (names of ids)", files.ids.string()));
     if (image.sensor) say(fmt::format("wrote {} (the camera's image)", files.sensor.string()));
     if (files.preview.empty()) return;

@@ -23,6 +23,7 @@ const char* const k_render_examples = R"(Examples:
   uwvdb render camera.yaml -o camera.sensor.png --set camera.sensor.exposure=0.01
   uwvdb render plume.yaml --integrator path --error 0.02 --size 320x180
   uwvdb render plume.yaml --numbers - --object seabed
+  uwvdb render plume.yaml -o shot/plume.exr --deep 32
   uwvdb render houdini.yaml --set 'volumes[0].file=/data/my.vdb' --irradiance-vdb light.vdb
 
 render.scattering: multiple, the default of scenes with uwvdb: 2, is all light, however often it
@@ -47,6 +48,9 @@ constexpr int k_max_variations = 1'000'000;
 
 // The most layers of --orders, of either kind.
 constexpr int k_max_orders = 64;
+
+// The most samples of a deep pixel.
+constexpr int k_max_deep = 256;
 
 /// Restricts `option` to the words of `names`, a table of words and their meanings.
 void accept_words(Option& option, const auto& names) {
@@ -160,6 +164,9 @@ Options render_options(RenderArguments& a) {
     options.integer("--orders", "N", a.orders, 1, k_max_orders,
                     "with --integrator path: write layers of the light scattered, and reflected, "
                     "0 to N times");
+    options.integer("--deep", "N", a.deep, 4, k_max_deep,
+                    "write OUT.deep.exr, too: radiance and alpha by distance, about N samples per "
+                    "pixel at most, to composite objects into the water");
     accept_words(options.text("--quality", "NAME", a.quality,
                               "draft: within 3 %, one sample, for previews; final; or exact: water "
                               "integrated for every pixel"),

@@ -38,6 +38,7 @@ struct RenderArguments {
     std::optional<int> samples;
     std::optional<double> error;  // --error: instead of a number of samples
     std::optional<int> orders;    // --orders: layers by order of scattering
+    std::optional<int> deep;      // --deep: the maximum of samples per pixel
     std::string quality;          // draft or final; empty: final
     int threads = 0;              // 0: all
     std::filesystem::path stats;

@@ -40,6 +40,7 @@
 #include "core/base/error.h"
 #include "core/base/input_files.h"
 #include "core/base/parallel.h"
+#include "core/image/exr_stream.h"
 #include "core/image/layers.h"
 
 namespace uw {
@@ -203,6 +204,8 @@ constexpr float k_aces_white_x = 0.32168F, k_aces_white_y = 0.33767F;
 const Imf::Chromaticities k_aces_chromaticities{
     {0.7347F, 0.2653F}, {0.0F, 1.0F}, {0.0001F, -0.0770F}, {k_aces_white_x, k_aces_white_y}};
 
+}  // namespace
+
 Imf::Header openexr_header(const ExrHeader& header) {
     const PixelWindow& window = header.window;
     Imf::Header result({{0, 0}, {header.width - 1, header.height - 1}},
@@ -233,19 +236,16 @@ Imf::Header openexr_header(const ExrHeader& header) {
     return result;
 }
 
-/// OpenEXR's way to an OutputFile, which keeps errors until it is committed.
-class ExrStream : public Imf::OStream {
-  public:
-    explicit ExrStream(OutputFile& out) : OStream("image"), out_(out) {}
-    void write(const char bytes[], int count) override {
-        out_.write(std::string_view(bytes, static_cast<std::size_t>(count)));
+void permit_exr_threads() {
+    const int threads = permitted_threads();
+    try {
+        Imf::setGlobalThreadCount(threads > 1 ? threads : 0);  // 0: the calling thread alone
+    } catch (const std::exception&) {
+        // The system grants no thread: those that there are, if any, will do.
     }
-    std::uint64_t tellp() override { return out_.position(); }
-    void seekp(std::uint64_t position) override { out_.seek(position); }
+}
 
-  private:
-    OutputFile& out_;
-};
+namespace {
 
 /// How many lines of so many values are handed over to so many threads: whole blocks, as many for
 /// each.
@@ -333,12 +333,8 @@ std::optional<ExrHeader> known_header(const Imf::Header& header) {
 }  // namespace
 
 void write_exr_file(OutputFile& out, const Film& film, const ExrHeader& header) {
+    permit_exr_threads();
     const int threads = permitted_threads();
-    try {
-        Imf::setGlobalThreadCount(threads > 1 ? threads : 0);  // 0: the calling thread alone
-    } catch (const std::exception&) {
-        // The system grants no thread: those that there are, if any, will do.
-    }
     ExrStream stream(out);
     try {
         Imf::OutputFile file(stream, openexr_header(header));

@@ -38,12 +38,17 @@ enum class Layer {
     position,
     id,
     material,
+    plume_optical_depth,
+    plume_opacity,
+    plume_range_50,
+    plume_range_10,
     crypto_object,
     crypto_material,
     sensor,
     flow,
     flow_back,
     flow_occluded,
+    plume_flow,
     disparity,
     disparity_occluded,
     count,  // not a layer: the number of layers
@@ -57,6 +62,7 @@ enum class LayerContent {
     exact,     ///< light that no path estimates, or its error: of an exposure, not of paths
     fraction,  ///< from 0 to 1, not light: a mean over an exposure
     point,     ///< ground truth of the point that a pixel's centre sees; 0 where it sees none
+    ray,       ///< ground truth of the water along the ray of a pixel's centre; 0 without a ray
     matte,     ///< what the pixel shows and how much of each: `all` leaves it out
     match,     ///< where that point is in another image: `all` leaves it out
     number,    ///< the sensor's
@@ -92,6 +98,9 @@ struct LayerKind {
 
 namespace layer_hints {
 inline constexpr std::string_view
+    k_plume = "there is no plume in the scene; add volumes with grids",
+    k_plume_flow =
+        "no volume says how it moves; give one its velocity, and the sequence's --frames",
     k_multiple =
         "the scene is rendered with single scattering; write --set render.scattering=multiple, or "
         "--integrator path",
@@ -131,12 +140,18 @@ inline constexpr std::array<LayerKind, k_layer_count> k_layers{{
     {Layer::position, LayerContent::point, "position", "XYZ"},
     {Layer::id, LayerContent::point, "id", "V"},
     {Layer::material, LayerContent::point, "material", "V"},
+    {Layer::plume_optical_depth, LayerContent::ray, "plume.optical_depth", "",
+     layer_hints::k_plume},
+    {Layer::plume_opacity, LayerContent::ray, "plume.opacity", "V", layer_hints::k_plume},
+    {Layer::plume_range_50, LayerContent::ray, "plume.range_50", "V", layer_hints::k_plume},
+    {Layer::plume_range_10, LayerContent::ray, "plume.range_10", "V", layer_hints::k_plume},
     {Layer::crypto_object, LayerContent::matte, "crypto_object"},
     {Layer::crypto_material, LayerContent::matte, "crypto_material"},
     {Layer::sensor, LayerContent::number, "sensor", "RGB", layer_hints::k_sensor},
     {Layer::flow, LayerContent::match, "flow", "XY", layer_hints::k_flow},
     {Layer::flow_back, LayerContent::match, "flow_back", "XY", layer_hints::k_flow},
     {Layer::flow_occluded, LayerContent::match, "flow_occluded", "V", layer_hints::k_flow},
+    {Layer::plume_flow, LayerContent::match, "plume.flow", "XY", layer_hints::k_plume_flow},
     {Layer::disparity, LayerContent::match, "disparity", "XY", layer_hints::k_disparity},
     {Layer::disparity_occluded, LayerContent::match, "disparity_occluded", "V",
      layer_hints::k_disparity},
@@ -209,11 +224,13 @@ struct ChannelGroup {
 /// decimal point is written as an underscore (`direct.540_5nm`), since readers take everything
 /// before the last point as the layer. Then the total per band is a layer of its own, `total`; with
 /// three bands it is R G B. The others: `lit.V`, `depth.Z`, `range.V`, `path.V`, `normal.X .Y .Z`,
-/// `position.X .Y .Z`, `id.V`, `material.V`, `CryptoObject00.R` and so on (cryptomatte.h),
-/// `sensor.V` or `sensor.R .G .B`, `flow.X .Y`, `flow_back.X .Y`, `flow_occluded.V`, `disparity.X
-/// .Y`, `disparity_occluded.V`. A lamp's own light is `lamp.<name>.R` and so on; light scattered n
-/// times is `order.<n>.R`, what is scattered more often than LayerSupply::orders `order.more.R`,
-/// and by reflections likewise `reflections.<n>.R`.
+/// `position.X .Y .Z`, `id.V`, `material.V`, `plume.optical_depth.R` and so
+/// on, `plume.opacity.V`, `plume.range_50.V`, `plume.range_10.V`, `CryptoObject00.R` and so on
+/// (cryptomatte.h), `sensor.V` or `sensor.R .G .B`, `flow.X .Y`, `flow_back.X .Y`,
+/// `flow_occluded.V`, `plume.flow.X .Y`, `disparity.X .Y`, `disparity_occluded.V`. A lamp's own
+/// light is `lamp.<name>.R` and so on; light scattered n times is `order.<n>.R`, what is scattered
+/// more often than LayerSupply::orders `order.more.R`, and by reflections likewise
+/// `reflections.<n>.R`.
 class LayerPlan {
   public:
     /// `request` is the argument of --layers: comma-separated layers, including `lamps` for every

@@ -279,4 +279,18 @@ void MultipleScattering::add(const PixelView& view, const SurfaceLight& light,
         result.error[b] = result.pixel_factor * errors.of_band(b);
 }
 
+Spectrum MultipleScattering::light_of_water(const PixelView& view, double distance) const {
+    PixelView up_to;
+    up_to.x = view.x;
+    up_to.y = view.y;
+    up_to.distances = {distance};
+    up_to.weights = {1};
+    std::vector<double> light(cache_->groups() * bands_, 0.0);
+    Errors errors;
+    add_water(up_to, light, errors);
+    Spectrum sum;
+    for (std::size_t k = 0; k < light.size(); ++k) sum[k % bands_] += light[k];
+    return sum;
+}
+
 }  // namespace uw

@@ -35,6 +35,9 @@ class MultipleScattering {
     void add(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
              PixelResult& result) const;
 
+    /// Rendering::multiple_up_to. Thread safe.
+    Spectrum light_of_water(const PixelView& view, double distance) const;
+
   private:
     struct Corner {
         const SmoothNode* node;

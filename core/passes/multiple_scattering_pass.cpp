@@ -64,6 +64,9 @@ void MultipleScatteringPass::begin(Rendering& rendering) {
         light_->add(pixel.view, pixel.light, pixel.first_sample, pixel.result);
         sums_->add(pixel);
     });
+    rendering.multiple_up_to = [this](const PixelView& view, double distance) {
+        return light_->light_of_water(view, distance);
+    };
 }
 
 std::shared_ptr<const CameraRadianceCache> MultipleScatteringPass::trace(

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/base/spectrum.h"
 #include "core/image/colour.h"
+#include "core/image/deep_image.h"
 #include "core/image/film.h"
 #include "core/image/layers.h"
 #include "core/light/integrator.h"
@@ -83,6 +85,7 @@ struct ImageTarget {
     Film& film;  // its window is what is rendered
     const StageProgressCallback& progress;
     ImageProgress& reached;
+    DeepImage* deep = nullptr;  // where DeepPass writes; null: no deep image is wanted
 
     /// Returns a callback that reports the progress of this stage to `progress`.
     ProgressCallback progress_of(Stage stage) const {
@@ -105,6 +108,9 @@ struct Rendering : ImageTarget {
     bool is_shared = false;
     /// In the order in which they are applied to a pixel, before it is stored.
     std::vector<PixelStep> steps{};
+    /// The light of MultipleScatteringPass that the water up to a distance along a pixel's ray [m]
+    /// scatters to the camera, by band; empty if that pass is not run.
+    std::function<Spectrum(const PixelView& view, double distance)> multiple_up_to{};
 };
 
 /// What a pass needs before it is run.

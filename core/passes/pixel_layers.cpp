@@ -108,12 +108,17 @@ constexpr std::array<LayerFill, k_layer_count> k_fills{{
     {Layer::position, fill_from_hit<&SurfaceHit::position>},
     {Layer::id, fill_from_hit<&SurfaceHit::object_id>},
     {Layer::material, fill_from_hit<&SurfaceHit::material_id>},
+    {Layer::plume_optical_depth, fill<&PixelResult::plume_optical_depth>},
+    {Layer::plume_opacity, fill<&PixelResult::plume_opacity>},
+    {Layer::plume_range_50, fill<&PixelResult::plume_range_50>},
+    {Layer::plume_range_10, fill<&PixelResult::plume_range_10>},
     {Layer::crypto_object, fill_mattes<&PixelResult::SeenSurface::object>},
     {Layer::crypto_material, fill_mattes<&PixelResult::SeenSurface::material>},
     {Layer::sensor, keep},
     {Layer::flow, fill<&PixelResult::flow>},
     {Layer::flow_back, fill<&PixelResult::flow_back>},
     {Layer::flow_occluded, fill<&PixelResult::flow_occluded>},
+    {Layer::plume_flow, fill<&PixelResult::plume_flow>},
     {Layer::disparity, fill<&PixelResult::disparity>},
     {Layer::disparity_occluded, fill<&PixelResult::disparity_occluded>},
 }};
@@ -212,17 +217,19 @@ void restore_sums(const LayerPlan& plan, const BandColour& colour, std::span<flo
 
 void PixelResult::reset(std::size_t lamp_count, std::size_t bands) {
     alpha = lit = depth_z = range = path = 0;
+    plume_opacity = plume_range_50 = plume_range_10 = 0;
     pixel_factor = 1;
     has_hit = false;
     hit = {};
     constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
-    flow = flow_back = disparity = {k_none, k_none};
+    flow = flow_back = plume_flow = disparity = {k_none, k_none};
     flow_occluded = disparity_occluded = k_none;
     // There are few bands, so that clearing band by band is faster than spectrum by spectrum.
     for (std::size_t b = 0; b < bands; ++b)
         for (Spectrum* const values :
              {&direct, &lamps_in_view, &forward, &backscatter, &backscatter_first, &multiple_volume,
-              &multiple_surface, &snow, &error, &irradiance, &exitance, &clean, &transmittance})
+              &multiple_surface, &snow, &error, &irradiance, &exitance, &clean, &transmittance,
+              &plume_optical_depth})
             (*values)[b] = 0;
     lamps.assign(lamp_count, Spectrum{});
     orders.clear();

@@ -57,6 +57,15 @@ struct PixelResult {
     double depth_z = 0;  // camera-frame z of the hit
     double range = 0;    // from the camera's centre to the hit
     double path = 0;     // in water, from the outer glass surface to the hit
+    // The particles of volumes along the centre's ray up to the hit, 0 unless they are wanted
+    // (PixelRenderer::find_plume): their optical depth, 1 - the mean over the bands of their
+    // transmittance, and the distances from the camera's centre to where that mean has fallen to
+    // 0.5 and 0.1, 0 where it does not fall so far [m].
+    Spectrum plume_optical_depth;
+    double plume_opacity = 0, plume_range_50 = 0, plume_range_10 = 0;
+    // The apparent motion of the plume at half of that opacity until the next frame [pixels]; NaN
+    // without a plume.
+    std::array<double, 2> plume_flow;
     // The position of the centre's point in other images (PointMatchers), relative to the pixel's
     // centre [pixels], and whether it is hidden there, as 0 or 1; NaN if there is no point or no
     // such image.

@@ -10,6 +10,7 @@
 #include "core/geometry/surface_reflection.h"
 #include "core/geometry/textured_surfaces.h"
 #include "core/image/cryptomatte.h"
+#include "core/light/ray_transmittance.h"
 #include "core/light/submerged.h"
 
 namespace uw {
@@ -205,6 +206,7 @@ void PixelRenderer::begin_view(int x, int y, PixelView& view) const {
     view.lamps.clear();
     view.x = x + 0.5;
     view.y = y + 0.5;
+    view.is_central = true;
     view.has_hit = false;
     view.ray = rays_.refracted_ray(view.x, view.y);
 }
@@ -298,6 +300,7 @@ void PixelRenderer::add_samples(int x, int y, PixelView& view) const {
             view.ray = ray;
             view.x = x + offset.x;
             view.y = y + offset.y;
+            view.is_central = false;
         }
         view.alpha += 1.0 / count;
         SurfaceSample& sample = view.samples.emplace_back();
@@ -349,6 +352,7 @@ void PixelRenderer::shade(const PixelView& view, const SurfaceLight& light,
 
 void PixelRenderer::store_truth(const PixelView& view, PixelResult& result) const {
     result.has_hit = view.has_hit;
+    if (plume_ && view.ray && view.is_central) store_plume(view, result);
     if (!view.has_hit) return;
     result.hit = view.hit;
     result.depth_z = view.depth_z;
@@ -460,12 +464,37 @@ void PixelRenderer::add_water(std::span<const double> in_scatter, PixelResult& r
 
 void PixelRenderer::finish_ground_truth(PixelView& view) const {
     if (!view.has_hit) return;
-    const Point3 in_camera = rays_.is_rolling()
-                                 ? rays_.world_from_camera_at(view.y).inverse() * view.hit.position
-                                 : camera_from_world_ * view.hit.position;
-    view.depth_z = in_camera.z;
-    view.range = glm::length(from_origin(in_camera));
+    const Point3 point = in_camera(view, view.hit.position);
+    view.depth_z = point.z;
+    view.range = glm::length(from_origin(point));
     view.path = view.hit.distance;
+}
+
+Point3 PixelRenderer::in_camera(const PixelView& view, const Point3& point) const {
+    return rays_.is_rolling() ? rays_.world_from_camera_at(view.y).inverse() * point
+                              : camera_from_world_ * point;
+}
+
+void PixelRenderer::find_plume() {
+    plume_ = attenuation_of_constituents(*scene_.medium);
+}
+
+void PixelRenderer::store_plume(const PixelView& view, PixelResult& result) const {
+    const RayTransmittance through(*plume_, scene_.field->grids(), *view.ray,
+                                   view.has_hit ? view.path : k_far);
+    result.plume_optical_depth = through.optical_depth(through.end());
+    const double seen_through = through.mean_transmittance(through.end());
+    result.plume_opacity = 1 - seen_through;
+    const auto range_at = [&](double transmittance) {
+        const std::optional<double> s = through.distance_at(transmittance);
+        return s ? glm::length(from_origin(in_camera(view, view.ray->at(*s)))) : 0;
+    };
+    result.plume_range_50 = range_at(0.5);
+    result.plume_range_10 = range_at(0.1);
+    if (!matchers_.plume || !(result.plume_opacity > 0)) return;
+    const std::optional<double> middle = through.distance_at(1 - 0.5 * result.plume_opacity);
+    const auto match = middle ? matchers_.plume->match(view.ray->at(*middle)) : std::nullopt;
+    if (match) result.plume_flow = {match->x - view.x, match->y - view.y};
 }
 
 }  // namespace uw

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "core/light/integrator.h"
 #include "core/light/integrator_kind.h"
 #include "core/light/lamps_in_view.h"
+#include "core/light/medium.h"
 #include "core/light/slabs.h"
 #include "core/passes/pixel_layers.h"
 #include "core/passes/pixel_view.h"
@@ -89,6 +91,10 @@ class PixelRenderer {
                   const PixelSamples& samples, const Slabs& slabs, const SensorModel& sensor = {},
                   const InScatterParts& parts = {}, const PointMatchers& matchers = {});
 
+    /// Finds the ground truth of the volumes' particles, too (PixelResult::plume_opacity and so
+    /// on).
+    void find_plume();
+
     /// weight(x, y) is the factor, by band, on the light of a pixel before it is stored.
     using PixelWeight = std::function<Spectrum(int x, int y)>;
     void set_weight(PixelWeight weight) { weight_ = std::move(weight); }
@@ -124,6 +130,12 @@ class PixelRenderer {
     /// `in_scatter` (RayInScatter). `result` is reused storage. Thread safe.
     void shade(const PixelView& view, const SurfaceLight& light, std::size_t first_sample,
                std::span<const double> in_scatter, PixelResult& result) const;
+    /// Adds the light of one of a pixel's samples, `sample` of `light`, to what shade() makes of
+    /// all.
+    void add_surface(const SurfaceSample& surface, const SurfaceLight& light, std::size_t sample,
+                     PixelResult& result) const;
+    /// The same for a lamp that one of them sees.
+    void add_lamp(const SeenLamp& lamp, PixelResult& result) const;
     /// Returns the factor on a pixel's light in the image, PixelResult::pixel_factor; 1 without a
     /// ray.
     double pixel_factor(const PixelView& view) const;
@@ -134,11 +146,8 @@ class PixelRenderer {
     void render(int x, int y, PixelResult& result) const;
 
   private:
-    void add_surface(const SurfaceSample& surface, const SurfaceLight& light, std::size_t sample,
-                     PixelResult& result) const;
     // Records the objects and materials that the samples see, for mattes.
     void add_mattes(const PixelView& view, PixelResult& result) const;
-    void add_lamp(const SeenLamp& lamp, PixelResult& result) const;
     void add_water(std::span<const double> in_scatter, PixelResult& result) const;
     // Finds the ground truth of a view.
     void trace_center(int x, int y, PixelView& view) const;
@@ -147,6 +156,8 @@ class PixelRenderer {
     // Sets the ground truth from the ray's hit, if there is one.
     void finish_ground_truth(PixelView& view) const;
     void store_truth(const PixelView& view, PixelResult& result) const;
+    void store_plume(const PixelView& view, PixelResult& result) const;
+    Point3 in_camera(const PixelView& view, const Point3& point) const;
     // Makes the pixel's centre its only sample.
     void add_center(PixelView& view) const;
     // Traces the samples, unless there is only one, which is the pixel's centre.
@@ -163,6 +174,7 @@ class PixelRenderer {
     const TexturedSurfaces* textures_;  // null: no surface has textures
     PointMatchers matchers_;
     PixelWeight weight_;                                  // null: 1
+    std::optional<AttenuationTable> plume_;               // of the particles; none: not wanted
     std::vector<float> object_mattes_, material_mattes_;  // by SurfaceHit's ids
     Affine camera_from_world_;
 };

@@ -34,6 +34,16 @@ class PointMatcher {
                        std::span<std::optional<PointMatch>> matches) const = 0;
 };
 
+/// Finds in the next frame's image what drifts with the water of volumes. Thread safe.
+class PlumeMatcher {
+  public:
+    virtual ~PlumeMatcher() = default;
+
+    /// The position in the next frame of what is at `point` (world) now; none if no volume's
+    /// velocity is known there or it leaves what the camera can image.
+    virtual std::optional<PointMatch> match(const Point3& point) const = 0;
+};
+
 /// The matches of a point in the images of PointMatchers.
 struct PointMatches {
     std::optional<PointMatch> next, previous, other_camera;
@@ -44,7 +54,8 @@ struct PointMatchers {
     const PointMatcher* next = nullptr;      ///< frame
     const PointMatcher* previous = nullptr;  ///< frame
     const PointMatcher* other_camera = nullptr;
-    bool is_first_camera = true;  ///< whether this image is that of the pair's first camera
+    const PlumeMatcher* plume = nullptr;  ///< in the next frame
+    bool is_first_camera = true;          ///< whether this image is that of the pair's first camera
 };
 
 /// What the rays of one pixel hit, before any lighting. Reused storage.
@@ -52,6 +63,7 @@ struct PixelView {
     double alpha = 0;        // fraction of the samples whose ray enters the water
     std::optional<Ray> ray;  // for in-scattering; none if no ray enters the water
     double x = 0, y = 0;     // image position of that ray
+    bool is_central = true;  // whether that is the pixel's centre
     /// The distances up to which in-scattering is integrated [m along `ray`, ascending; k_far
     /// without a surface], and the fraction of the samples that each stands for. Empty without a
     /// ray.

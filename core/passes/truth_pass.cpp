@@ -5,8 +5,12 @@
 namespace uw {
 
 void TruthPass::provide(LayerSupply& supply) const {
-    if (has_other_frames_) supply.layers |= {Layer::flow, Layer::flow_back, Layer::flow_occluded};
-    if (has_other_cameras_) supply.layers |= {Layer::disparity, Layer::disparity_occluded};
+    if (subjects_.frames) supply.layers |= {Layer::flow, Layer::flow_back, Layer::flow_occluded};
+    if (subjects_.cameras) supply.layers |= {Layer::disparity, Layer::disparity_occluded};
+    if (subjects_.plume)
+        supply.layers |= {Layer::plume_optical_depth, Layer::plume_opacity, Layer::plume_range_50,
+                          Layer::plume_range_10};
+    if (subjects_.frames && subjects_.moving_plume) supply.layers |= {Layer::plume_flow};
 }
 
 void TruthPass::run(Rendering& rendering) {

@@ -9,18 +9,19 @@ namespace uw {
 /// own rays. Otherwise it is that of the middle of the exposure, for which this pass traces rays.
 class TruthPass final : public Pass {
   public:
-    /// The arguments say whether the scene has other frames and other cameras in which points can
-    /// be found.
-    TruthPass(bool has_other_frames, bool has_other_cameras)
-        : Pass(std::nullopt, Of::truth),
-          has_other_frames_(has_other_frames),
-          has_other_cameras_(has_other_cameras) {}
+    /// What of a scene there is truth about: other frames and other cameras, in which points can
+    /// be found, particles of volumes, and how these move.
+    struct Subjects {
+        bool frames = false, cameras = false, plume = false, moving_plume = false;
+    };
+    explicit TruthPass(const Subjects& subjects)
+        : Pass(std::nullopt, Of::truth), subjects_(subjects) {}
 
     void provide(LayerSupply& supply) const override;
     void run(Rendering& rendering) override;
 
   private:
-    bool has_other_frames_, has_other_cameras_;
+    Subjects subjects_;
 };
 
 }  // namespace uw

@@ -133,7 +133,8 @@ FinishedImage RunEngine::finished(const WantedImage& wanted) {
                         metadata_of(renderer_.assembled(), job_->images[place_].choice.frame,
                                     options.paths, renderer_.report()),
                         renderer_.report(),
-                        renderer_.assembled().surfaces};
+                        renderer_.assembled().surfaces,
+                        renderer_.release_deep()};
     if (!wanted.camera_image) return image;
     const CameraDesc& camera = scene.desc().camera;
     const PixelWindow window = window_of(wanted, camera);

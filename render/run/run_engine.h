@@ -73,6 +73,7 @@ struct FinishedImage {
     ImageMetadata metadata;
     RenderReport report;
     std::shared_ptr<const Surfaces> surfaces;
+    std::optional<DeepImage> deep{};  ///< if it was wanted: in the film's window or more
 };
 
 /// The remaining work on an image once it is rendered; empty: none.
