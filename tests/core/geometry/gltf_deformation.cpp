@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -241,6 +242,34 @@ TEST_F(GltfSkin, RefusesWhatIsDamaged) {
     std::string missing = Ribbon().text();
     missing.replace(missing.find("\"skin\":0"), 8, "\"skin\":4");
     expect_refused(missing, "glTF 'skin' refers to an item that does not exist");
+}
+
+// Each digit of the description in turn becomes another one: indices, counts, sizes and types are
+// forged one by one. Reading such a file ends with a mesh or with one line.
+TEST_F(GltfSkin, ForgedNumbersEndInAMeshOrALine) {
+    const std::string text = Ribbon().text();
+    const std::size_t end = text.find("data:application");
+    int read = 0, refused = 0;
+    for (std::size_t at = 0; at < end; ++at) {
+        if (std::isdigit(static_cast<unsigned char>(text[at])) == 0) continue;
+        for (const char forged : {'0', '9'}) {
+            std::string broken = text;
+            broken[at] = forged;
+            const auto file = write(broken);
+            try {
+                std::vector<std::string> notes;
+                const MeshFile mesh = read_at(file, 1.5, &notes);
+                EXPECT_EQ(mesh.mesh.positions.size() % 3, 0U);
+                GltfSource(file, {}).moment(1.5);
+                ++read;
+            } catch (const InputError& error) {
+                EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+                ++refused;
+            }
+        }
+    }
+    EXPECT_GT(read, 100);
+    EXPECT_GT(refused, 100);
 }
 
 /// A square of corners (0,0) (1,0) (1,1) (0,1) with two morph targets, the first with normals.
