@@ -17,9 +17,9 @@ namespace uw::test {
 namespace {
 
 // Frame 10 is at 1 s.
-constexpr int k_frame = 10;
-constexpr int k_width = 48, k_height = 32;
-constexpr double k_focal = 100;  // [px]
+constexpr int k_square_frame = 10;
+constexpr int k_square_width = 48, k_square_height = 32;
+constexpr double k_square_focal = 100;  // [px]
 
 /// A square in the plane z = 2 with corners at x and y of +-0.2, whose morph target of weight t at
 /// t seconds moves its corners by these velocities [m/s].
@@ -62,7 +62,7 @@ class DeformingMeshes : public testing::Test {
             {});
     }
     static Film image(const SceneDesc& scene, const std::string& layers) {
-        return image_of(scene_of_image(scene, {k_frame}), {.layers = layers});
+        return image_of(scene_of_image(scene, {k_square_frame}), {.layers = layers});
     }
     static std::vector<float> all_by(float x, float y, float z) {
         std::vector<float> values;
@@ -76,17 +76,17 @@ class DeformingMeshes : public testing::Test {
 template <class Velocity>
 int check_flow(const Film& film, int channel, double seconds, const Velocity& velocity) {
     int seen = 0;
-    for (int j = 0; j < k_height; ++j)
-        for (int i = 0; i < k_width; ++i) {
-            const double x = (i + 0.5 - k_width / 2.0) / k_focal * 2,
-                         y = (j + 0.5 - k_height / 2.0) / k_focal * 2;
+    for (int j = 0; j < k_square_height; ++j)
+        for (int i = 0; i < k_square_width; ++i) {
+            const double x = (i + 0.5 - k_square_width / 2.0) / k_square_focal * 2,
+                         y = (j + 0.5 - k_square_height / 2.0) / k_square_focal * 2;
             if (std::abs(x) > 0.199 || std::abs(y) > 0.199) continue;
             const Vector3 there = Vector3(x, y, 2) + seconds * velocity(x, y);
             const auto pixel = film.pixel(i, j);
             const auto at = static_cast<std::size_t>(channel);
-            EXPECT_NEAR(double{pixel[at]}, k_focal * (there.x / there.z - x / 2), 1e-3)
+            EXPECT_NEAR(double{pixel[at]}, k_square_focal * (there.x / there.z - x / 2), 1e-3)
                 << i << ", " << j;
-            EXPECT_NEAR(double{pixel[at + 1]}, k_focal * (there.y / there.z - y / 2), 1e-3)
+            EXPECT_NEAR(double{pixel[at + 1]}, k_square_focal * (there.y / there.z - y / 2), 1e-3)
                 << i << ", " << j;
             ++seen;
         }
@@ -109,7 +109,7 @@ TEST_F(DeformingMeshes, FlowFollowsThePointsOfTriangles) {
         EXPECT_GT(check_flow(film, 6, -0.1, velocity), 300);
         // Nothing hides the square from itself.
         EXPECT_EQ(film.pixel(20, 12)[8], 0);
-        EXPECT_EQ(film.pixel(k_width / 2, k_height / 2)[8], 0);
+        EXPECT_EQ(film.pixel(k_square_width / 2, k_square_height / 2)[8], 0);
     }
 }
 
@@ -145,9 +145,9 @@ TEST_F(DeformingMeshes, BlurIsARampWhereVerticesMove) {
         const auto v = static_cast<float>(way * 0.02 / 0.04);
         const Film film = image(
             scene({0, 0, 0, v, 0, 0, v, 0, 0, 0, 0, 0}, ", shutter: 0.04, samples: 128"), "direct");
-        for (int i = 0; i < k_width; ++i) {
+        for (int i = 0; i < k_square_width; ++i) {
             const double value = double{film.pixel(i, 16)[0]} / bright;
-            const double x = i + 0.5 - k_width / 2.0;
+            const double x = i + 0.5 - k_square_width / 2.0;
             const double expected = x < 0 ? ramp(-10 - x, 1e-6) : ramp(x - 10, way);
             // Surfaces stand still in parts of the exposure in which they move by half a pixel: the
             // ramp is made of steps, off by a quarter of their height in the mean over a pixel.

@@ -318,6 +318,7 @@ def test_motion_blur_against_cycles():
         scene.uwvdb.samples = 256
         ours, theirs = (passes["Combined"][4, :, 0]
                         for passes in (render(frame=2), render("CYCLES", frame=2, samples=1024)))
+        assert not any("keys" in note for note in notes()), notes()
         assert ((theirs > 0.1) & (theirs < 0.9)).sum() > 8
         close(ours, theirs, 0.06, f"blur, {position}")
 
