@@ -58,7 +58,7 @@ Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& p
     };
     if (plan.has(Layer::flow) || finds_occluded) {
         if (const auto next = neighbour(scene.image, 1))
-            next_.emplace(camera_of_truth(*next), motions_until(next->desc()),
+            next_.emplace(camera_of_truth(*next), scene.surfaces, motions_until(next->desc()),
                           finds_occluded ? surfaces_of(next->desc(), scene, cache) : nullptr);
     }
     if (plan.has(Layer::plume_flow)) {
@@ -67,13 +67,14 @@ Correspondences::Correspondences(const AssembledScene& scene, const LayerPlan& p
     }
     if (plan.has(Layer::flow_back)) {
         if (const auto previous = neighbour(scene.image, -1))
-            previous_.emplace(camera_of_truth(*previous), motions_until(previous->desc()), nullptr);
+            previous_.emplace(camera_of_truth(*previous), scene.surfaces,
+                              motions_until(previous->desc()), nullptr);
     }
     if (!plan.has(Layer::disparity) && !plan.has(Layer::disparity_occluded)) return;
     if (now.cameras.size() < 2) return;
     is_first_camera_ = scene.image.choice().camera == 0;
     other_camera_.emplace(camera_of_truth(scene.image.seen_by(is_first_camera_ ? 1 : 0)),
-                          ObjectMotions(), scene.surfaces);
+                          scene.surfaces, ObjectMotions(), scene.surfaces);
 }
 
 PointMatchers Correspondences::matchers() const {

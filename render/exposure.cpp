@@ -24,6 +24,8 @@ constexpr int k_poses = 33, k_table_size = 257;
 constexpr int k_moments = 9;
 // Image positions whose points are tracked, along each axis.
 constexpr int k_positions = 32;
+// Number of vertices that are tracked of a file whose objects deform.
+constexpr std::size_t k_vertices = 256;
 // Maximum motion in a part of the exposure [pixels], and maximum number of parts.
 constexpr double k_surface_step = 0.5, k_light_step = 2, k_view_step = 4;
 constexpr int k_max_parts = 64;
@@ -74,7 +76,9 @@ class Track {
 /// A point that is visible to the camera, or may be.
 struct TrackedPoint {
     Point3 position;
-    std::uint32_t object = 0;  // id of the object on whose surface it lies; 0: in the water
+    std::uint32_t object = 0;       // id of the object on whose surface it lies; 0: in the water
+    std::optional<SurfaceHit> hit;  // on a surface; none: it moves as its whole object
+    std::optional<std::size_t> vertex;  // of its object's file, ObjectMotion::vertices
 };
 
 // Returns points that the image shows: on surfaces or, without one, in the water at an optical
@@ -90,9 +94,9 @@ std::vector<TrackedPoint> visible_points(const AssembledScene& scene) {
                                                   (j + 0.5) / k_positions * camera.height());
             SurfaceHit hit;
             if (ray && scene.surfaces->closest_hit(*ray, k_far, hit))
-                points.push_back({hit.position, hit.is_water_surface ? 0 : hit.object_id});
+                points.push_back({hit.position, hit.is_water_surface ? 0 : hit.object_id, hit, {}});
             else if (ray && attenuation > 0)
-                points.push_back({ray->origin + ray->direction / attenuation, 0});
+                points.push_back({ray->origin + ray->direction / attenuation, 0, {}, {}});
         }
     return points;
 }
@@ -109,9 +113,40 @@ std::vector<TrackedPoint> origins(const SceneDesc& scene, const SurfaceNames& na
             origin = entry.world_from_object * entry.center;
         if (entry.type == GeometryDesc::Type::box)
             origin = entry.world_from_object * (entry.min + 0.5 * (entry.max - entry.min));
-        points.push_back({origin, static_cast<std::uint32_t>(i + 1)});
+        points.push_back({origin, static_cast<std::uint32_t>(i + 1), {}, {}});
     }
     return points;
+}
+
+Point3 vertex_of(const ObjectMotion& motion, std::size_t vertex) {
+    const float* p = &(*motion.vertices)[3 * vertex];
+    return {p[0], p[1], p[2]};
+}
+
+// Returns some of the vertices of the files in which objects deform.
+std::vector<TrackedPoint> tracked_vertices(const ObjectMotions& motions) {
+    std::vector<TrackedPoint> points;
+    const std::vector<float>* last = nullptr;  // objects of a file follow each other
+    for (std::size_t i = 0; i < motions.size(); ++i) {
+        if (!motions[i] || !motions[i]->vertices || motions[i]->vertices.get() == last) continue;
+        last = motions[i]->vertices.get();
+        const std::size_t count = last->size() / 3;
+        for (std::size_t vertex = 0; vertex < count; vertex += count / k_vertices + 1)
+            points.push_back(
+                {vertex_of(*motions[i], vertex), static_cast<std::uint32_t>(i + 1), {}, vertex});
+    }
+    return points;
+}
+
+// Returns where a point is that moves.
+std::optional<Point3> place_of(const TrackedPoint& point, const ObjectMotions& motions,
+                               const Surfaces& surfaces) {
+    if (point.object == 0 || motions.empty()) return std::nullopt;
+    if (point.hit) return moved_point(motions, surfaces, *point.hit);
+    const std::optional<ObjectMotion>& motion = motions[point.object - 1];
+    if (!motion) return std::nullopt;
+    if (!motion->vertices) return motion->map * point.position;
+    return point.vertex ? std::optional(vertex_of(*motion, *point.vertex)) : std::nullopt;
 }
 
 }  // namespace
@@ -178,17 +213,19 @@ void Exposure::measure(const std::vector<ImageScene>& moments) {
         cameras.emplace_back(then.camera);
         moves_surfaces_ = moves_surfaces_ || then.geometry != now.geometry;
     }
-    if (moves_surfaces_)
+    if (moves_surfaces_) {
         for (const TrackedPoint& origin : origins(now, names)) points.push_back(origin);
+        for (const TrackedPoint& vertex : tracked_vertices(motions.front()))
+            points.push_back(vertex);
+    }
     const Camera& still = *scene_.camera;
     for (const TrackedPoint& point : points) {
         Track view, surface;
         std::vector<Track> light(now.lamps.size());
         for (std::size_t m = 0; m < moments.size(); ++m) {
             view.extend(cameras[m], point.position);
-            if (point.object > 0 && !motions[m].empty())
-                if (const auto& motion = motions[m][point.object - 1])
-                    surface.extend(still, *motion * point.position);
+            if (const auto there = place_of(point, motions[m], *scene_.surfaces))
+                surface.extend(still, *there);
             // The light of a moving lamp is taken to move with it.
             for (std::size_t j = 0; j < light.size(); ++j) {
                 const Affine before = now.lamps[j].world_from_frame(now.camera.world_from_camera);

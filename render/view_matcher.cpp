@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,15 +26,31 @@ SeenPoint seen_point(const Point3& world, const Camera& camera, const Surfaces& 
     return point;
 }
 
-ViewMatcher::ViewMatcher(Camera camera, ObjectMotions motions,
-                         std::shared_ptr<const Surfaces> surfaces)
-    : camera_(std::move(camera)), motions_(std::move(motions)), surfaces_(std::move(surfaces)) {}
-
-std::optional<Point3> ViewMatcher::moved(const SurfaceHit& hit) const {
-    if (motions_.empty()) return hit.position;
-    const std::optional<Affine>& motion = motions_.at(hit.object_id - 1);
-    return motion ? std::optional(*motion * hit.position) : std::nullopt;
+std::optional<Point3> moved_point(const ObjectMotions& motions, const Surfaces& surfaces,
+                                  const SurfaceHit& hit) {
+    if (motions.empty()) return hit.position;
+    const std::optional<ObjectMotion>& motion = motions.at(hit.object_id - 1);
+    if (!motion) return std::nullopt;
+    if (!motion->vertices) return motion->map * hit.position;
+    const auto corners = surfaces.corners(hit);
+    if (!corners) return std::nullopt;
+    const std::array<double, 3> weights{1 - hit.u - hit.v, hit.u, hit.v};
+    Vector3 sum(0.0);
+    for (std::size_t k = 0; k < 3; ++k) {
+        const std::size_t at = 3 * std::size_t{(*corners)[k]};
+        if (at + 2 >= motion->vertices->size()) return std::nullopt;
+        const float* p = &(*motion->vertices)[at];
+        sum += weights[k] * Vector3(p[0], p[1], p[2]);
+    }
+    return Point3{sum.x, sum.y, sum.z};
 }
+
+ViewMatcher::ViewMatcher(Camera camera, std::shared_ptr<const Surfaces> own, ObjectMotions motions,
+                         std::shared_ptr<const Surfaces> surfaces)
+    : camera_(std::move(camera)),
+      own_(std::move(own)),
+      motions_(std::move(motions)),
+      surfaces_(std::move(surfaces)) {}
 
 void ViewMatcher::match(std::span<const SurfaceHit* const> hits,
                         std::span<std::optional<PointMatch>> matches) const {
@@ -42,7 +59,7 @@ void ViewMatcher::match(std::span<const SurfaceHit* const> hits,
     std::vector<char> blocked;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         matches[i].reset();
-        const std::optional<Point3> point = moved(*hits[i]);
+        const std::optional<Point3> point = moved_point(motions_, *own_, *hits[i]);
         if (!point) continue;
         PointMatch& match = matches[i].emplace();
         const std::optional<Sighting> sighting = camera_.sight(*point);
@@ -70,6 +87,17 @@ std::optional<Affine> inverse_of(const Affine& map) {
     return map.inverse();
 }
 
+/// The vertices of a moment in world space, rounded as those that are traced.
+std::shared_ptr<const std::vector<float>> placed(std::vector<float> vertices,
+                                                 const Affine& world_from_object) {
+    for (std::size_t at = 0; at + 2 < vertices.size(); at += 3) {
+        float* p = &vertices[at];
+        const Point3 world = world_from_object * Point3{p[0], p[1], p[2]};
+        for (int axis = 0; axis < 3; ++axis) p[axis] = static_cast<float>(world[axis]);
+    }
+    return std::make_shared<const std::vector<float>>(std::move(vertices));
+}
+
 /// Returns the motions of the `count` objects of one entry of `geometry`.
 ObjectMotions motions_of(const GeometryDesc& now, const GeometryDesc& then, std::size_t count,
                          std::vector<std::string>& warnings) {
@@ -82,16 +110,25 @@ ObjectMotions motions_of(const GeometryDesc& now, const GeometryDesc& then, std:
     }
     const Affine object_from_world = now.world_from_object.inverse();
     if (!now.animation)
-        return ObjectMotions(count, now.world_from_object == then.world_from_object
-                                        ? Affine()
-                                        : then.world_from_object * object_from_world);
-    const std::vector<Affine> before = gltf_placements(now.file, now.time.value_or(0));
-    const std::vector<Affine> after = gltf_placements(then.file, then.time.value_or(0));
+        return ObjectMotions(count, ObjectMotion{now.world_from_object == then.world_from_object
+                                                     ? Affine()
+                                                     : then.world_from_object * object_from_world,
+                                                 nullptr});
+    GltfSource source(now.file, {});
+    const std::vector<Affine> before = source.placements(now.time.value_or(0));
+    GltfMoment after = source.moment(then.time.value_or(0));
+    const auto vertices = placed(std::move(after.vertices), then.world_from_object);
     ObjectMotions motions(count);
-    for (std::size_t i = 0; i < std::min({count, before.size(), after.size()}); ++i) {
+    for (std::size_t i = 0; i < std::min(count, before.size()); ++i) {
+        if (after.deforms[i]) {
+            motions[i] = ObjectMotion{{}, vertices};
+            continue;
+        }
         // A node that is scaled to zero has no points.
         if (const auto node_from_file = inverse_of(before[i]))
-            motions[i] = then.world_from_object * after[i] * *node_from_file * object_from_world;
+            motions[i] = ObjectMotion{then.world_from_object * after.file_from_object[i] *
+                                          *node_from_file * object_from_world,
+                                      nullptr};
     }
     return motions;
 }

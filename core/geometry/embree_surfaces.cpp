@@ -39,6 +39,13 @@ class EmbreeSurfaces final : public Surfaces, public TexturedSurfaces {
         return material_of_mesh(objects_.placed(hit.geometry), objects_.bands, hit);
     }
 
+    std::optional<std::array<std::uint32_t, 3>> corners(const SurfaceHit& hit) const override {
+        if (hit.geometry >= objects_.meshes.size()) return std::nullopt;
+        const std::uint32_t* first =
+            &objects_.meshes[hit.geometry]->mesh.triangles[3 * std::size_t{hit.triangle}];
+        return std::array{first[0], first[1], first[2]};
+    }
+
     bool may_emit() const override {
         const auto emits = [](const MeshObject& object) {
             return std::ranges::any_of(object.mesh.materials, [](const MeshMaterial& material) {

@@ -102,14 +102,13 @@ std::shared_ptr<MeshObject> make_mesh_object(const GeometryDesc& desc, TriangleM
 GeometryDesc without_pose(const GeometryDesc& desc) {
     GeometryDesc still = desc;
     if (still.trajectory) still.world_from_object = {};
+    if (still.animation) still.time.reset();
     return still;
 }
 
-MeshFile mesh_file(const GeometryDesc& desc, std::vector<std::string>& warnings) {
-    if (desc.mesh) return {*desc.mesh, {}, {desc.mesh_name}, {}};
-    return read_mesh(desc.file, warnings,
-                     {desc.import.camera || desc.import.any_lamps(), desc.is_pbr,
-                      desc.is_material_given, desc.time});
+GltfUse use_of(const GeometryDesc& desc) {
+    return {desc.import.camera || desc.import.any_lamps(), desc.is_pbr, desc.is_material_given,
+            desc.time};
 }
 
 /// Moves the triangles whose material is of glass to another mesh, which has copies of all
@@ -229,27 +228,49 @@ std::shared_ptr<const FileSurfaces> MeshStore::load(const GeometryDesc& desc,
                                                     std::vector<std::string>& warnings) {
     const GeometryDesc still = without_pose(desc);
     const auto known = std::ranges::find_if(kept_, [&](const Kept& kept) {
-        return kept.desc == still && (kept.file || kept.before == before);
+        return kept.desc == still && (kept.file || kept.source || kept.before == before);
     });
     if (known != kept_.end() && known->files.are_current()) {
         known->is_used = true;
+        const bool is_same = known->time == desc.time &&
+                             (known->file || (known->surfaces && known->before == before));
+        if (!is_same) return read(*known, desc, before, reflectance, warnings);
         warnings.insert(warnings.end(), known->warnings.begin(), known->warnings.end());
         if (known->surfaces) return known->surfaces;
         return surfaces_of(*known->file, desc, before, reflectance);
     }
     if (known != kept_.end()) kept_.erase(known);
-    Kept kept{still, files_of(desc), {}, nullptr, nullptr, before, true};
-    MeshFile file = mesh_file(desc, kept.warnings);
-    warnings.insert(warnings.end(), kept.warnings.begin(), kept.warnings.end());
-    std::shared_ptr<const FileSurfaces> surfaces;
-    if (desc.trajectory) {
-        kept.file = std::make_shared<const MeshFile>(std::move(file));
-        surfaces = surfaces_of(*kept.file, desc, before, reflectance);
-    } else {
-        kept.surfaces = surfaces = surfaces_of(std::move(file), desc, before, reflectance);
-    }
+    Kept kept{still, files_of(desc), nullptr, desc.time, {}, nullptr, nullptr, before, true};
+    if (desc.animation && !desc.mesh)
+        kept.source = std::make_shared<MeshSource>(desc.file, use_of(desc));
+    std::shared_ptr<const FileSurfaces> surfaces = read(kept, desc, before, reflectance, warnings);
     kept_.push_back(std::move(kept));
     return surfaces;
+}
+
+std::shared_ptr<const FileSurfaces> MeshStore::read(Kept& kept, const GeometryDesc& desc,
+                                                    const IdsBefore& before,
+                                                    const std::optional<Spectrum>& reflectance,
+                                                    std::vector<std::string>& warnings) {
+    // Freed first, so that the contents of two times are not in memory at once.
+    kept.file.reset();
+    kept.surfaces.reset();
+    kept.warnings.clear();
+    kept.time = desc.time;
+    kept.before = before;
+    MeshFile file;
+    if (desc.mesh)
+        file = {*desc.mesh, {}, {desc.mesh_name}, {}};
+    else if (kept.source)
+        file = kept.source->read(desc.time, kept.warnings);
+    else
+        file = read_mesh(desc.file, kept.warnings, use_of(desc));
+    warnings.insert(warnings.end(), kept.warnings.begin(), kept.warnings.end());
+    if (desc.trajectory) {
+        kept.file = std::make_shared<const MeshFile>(std::move(file));
+        return surfaces_of(*kept.file, desc, before, reflectance);
+    }
+    return kept.surfaces = surfaces_of(std::move(file), desc, before, reflectance);
 }
 
 namespace {

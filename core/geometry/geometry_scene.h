@@ -24,6 +24,8 @@ struct IdsBefore {
     friend bool operator==(const IdsBefore&, const IdsBefore&) = default;
 };
 
+class MeshSource;  // core/geometry/mesh_reader.h
+
 /// What a mesh file adds to the surfaces of a scene. Never changed once it is made.
 struct FileSurfaces {
     struct Shared {
@@ -40,7 +42,8 @@ struct FileSurfaces {
 };
 
 /// The surfaces of mesh files, kept from one scene to the next, so that each file is read once even
-/// if objects move. A file is read again if it, or one that it names, has been replaced or written
+/// if objects move; of one that is animated, vertices are taken anew at each time. A file is read
+/// again if it, or one that it names, has been replaced or written
 /// since.
 class MeshStore {
   public:
@@ -59,16 +62,24 @@ class MeshStore {
     FileStamps files() const;
 
   private:
-    /// What was read for `desc`, whose pose is left out if it moves.
+    /// What was read for `desc`, whose pose and time are left out if it moves.
     struct Kept {
         GeometryDesc desc;
-        FileStamps files;  // the file and those that it names
+        FileStamps files;                    // the file and those that it names
+        std::shared_ptr<MeshSource> source;  // of animated files
+        std::optional<double> time;          // of their contents:
         std::vector<std::string> warnings;
         std::shared_ptr<const MeshFile> file;          // of moving objects
         std::shared_ptr<const FileSurfaces> surfaces;  // of static ones,
         IdsBefore before;                              // with these ids
         bool is_used = true;                           // by the scene built last
     };
+    /// Reads the contents of `kept`, which are those of `desc`.
+    static std::shared_ptr<const FileSurfaces> read(Kept& kept, const GeometryDesc& desc,
+                                                    const IdsBefore& before,
+                                                    const std::optional<Spectrum>& reflectance,
+                                                    std::vector<std::string>& warnings);
+
     std::vector<Kept> kept_;
 };
 

@@ -72,7 +72,6 @@ void GlassSurfaces::mark(SurfaceHit& hit) const {
     hit.reflectance = {};
     hit.has_material = false;
     hit.is_water_surface = false;
-    hit.geometry = std::numeric_limits<std::uint32_t>::max();
 }
 
 bool GlassSurfaces::closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const {

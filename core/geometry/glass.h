@@ -44,6 +44,9 @@ class GlassSurfaces final : public Surfaces, public TexturedSurfaces {
 
     bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const override;
     SurfaceMaterial material(const SurfaceHit& hit) const override;
+    std::optional<std::array<std::uint32_t, 3>> corners(const SurfaceHit& hit) const override {
+        return (hit.glass != 0 ? glass_ : opaque_)->corners(hit);
+    }
     bool may_emit() const override { return opaque_->may_emit(); }
     double hit_distance(const Ray& ray) const override { return opaque_->hit_distance(ray); }
     bool occluded(const Point3& from, const Point3& to) const override {

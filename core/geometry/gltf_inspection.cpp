@@ -24,8 +24,15 @@ class Inspection {
         gltf_nodes(document_);  // a strict tree
         check_sizes();
         for (const Json& mesh : document_.list("meshes")) {
-            for (const Json& primitive : document_.list(mesh, "primitives"))
+            const Json& primitives = document_.list(mesh, "primitives");
+            for (const Json& primitive : primitives) {
                 check_primitive(primitive);
+                if (document_.list(primitive, "targets").size() !=
+                    document_.list(primitives[0], "targets").size())
+                    document_.fail(
+                        "the primitives of a glTF mesh do not have the same number of morph "
+                        "targets");
+            }
         }
         for (const Json& material : document_.list("materials")) inspect_material(material);
         return {ignored_.begin(), ignored_.end()};
@@ -139,7 +146,22 @@ class Inspection {
         return gltf_component_size(document_.whole_number(entry, "componentType", 0));
     }
 
-    void check_attribute(const std::string& semantic, const Json& entry) const {
+    /// Numbers of joints are whole, and weights floats or fractions of the largest whole number.
+    void check_skin_attribute(const std::string& semantic, const Json& entry) const {
+        const std::uint64_t type = document_.whole_number(entry, "componentType", 0);
+        const bool is_unsigned = type == k_gltf_unsigned_byte || type == k_gltf_unsigned_short;
+        const bool is_normalised = entry.value("normalized", false);
+        const bool is_fine = semantic.starts_with("JOINTS_")
+                                 ? is_unsigned && !is_normalised
+                                 : type == k_gltf_float || (is_unsigned && is_normalised);
+        if (!is_fine)
+            document_.fail(
+                fmt::format("glTF {} has an invalid component type; export the mesh "
+                            "again",
+                            printable(semantic)));
+    }
+
+    void check_attribute(const std::string& semantic, const Json& entry, bool is_of_target) const {
         const std::string type = entry.value("type", "");
         const bool is_float = document_.whole_number(entry, "componentType", 0) == k_gltf_float;
         const bool is_vector = semantic == "POSITION" || semantic == "NORMAL";
@@ -150,14 +172,17 @@ class Inspection {
             document_.fail(fmt::format("glTF {} is quantised; export it as 32-bit floats",
                                        printable(semantic)));
         }
+        const std::string tangent = is_of_target ? "VEC3" : "VEC4";  // targets leave its side
         if ((is_vector && type != "VEC3") || (is_uv && type != "VEC2") ||
-            (semantic == "TANGENT" && (type != "VEC4" || !is_float)) ||
+            (semantic == "TANGENT" && (type != tangent || !is_float)) ||
             (is_color && type != "VEC3" && type != "VEC4") ||
             (semantic.starts_with("JOINTS_") && type != "VEC4") ||
             (semantic.starts_with("WEIGHTS_") && type != "VEC4")) {
             document_.fail(fmt::format("glTF {} has the invalid type '{}'", printable(semantic),
                                        printable(type)));
         }
+        if (semantic.starts_with("JOINTS_") || semantic.starts_with("WEIGHTS_"))
+            check_skin_attribute(semantic, entry);
     }
 
     void check_primitive(const Json& primitive) {
@@ -169,21 +194,18 @@ class Inspection {
         // Without data an accessor is all zeros, with any forged count.
         if (!positions.contains("bufferView")) document_.fail("a glTF POSITION has no data");
         const std::uint64_t count = document_.whole_number(positions, "count", 0);
-        const auto check_set = [&](const Json& set) {
+        const auto check_set = [&](const Json& set, bool is_target) {
             for (const auto& [semantic, index] : set.items()) {
                 const Json& entry = accessor(index);
-                check_attribute(semantic, entry);
+                check_attribute(semantic, entry, is_target);
                 if (document_.whole_number(entry, "count", 0) != count) {
                     document_.fail(fmt::format("glTF {} does not have the same count as POSITION",
                                                printable(semantic)));
                 }
             }
         };
-        check_set(attributes);
-        for (const Json& target : document_.list(primitive, "targets")) {
-            check_set(target);
-            ignored_.insert("morph targets");
-        }
+        check_set(attributes, false);
+        for (const Json& target : document_.list(primitive, "targets")) check_set(target, true);
         if (primitive.contains("indices")) {
             const Json& entry = accessor(primitive["indices"]);
             const std::uint64_t type = document_.whole_number(entry, "componentType", 0);

@@ -149,26 +149,27 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The keys of a sampler for values of N numbers.
-template <std::size_t N>
+/// The keys of a sampler.
 class Sampler {
   public:
-    using Value = std::array<double, N>;
+    using Value = std::vector<double>;
 
-    Sampler(const GltfDocument& document, GltfBytes& bytes, const Json& json)
+    /// `type` is that of the accessor of its values, of which `per_value` elements form a value.
+    Sampler(const GltfDocument& document, GltfBytes& bytes, const Json& json,
+            const std::string& type, std::size_t per_value)
         : document_(document),
           interpolation_(json.value("interpolation", "LINEAR")),
-          per_key_(interpolation_ == "CUBICSPLINE" ? 3 : 1) {
+          per_key_(interpolation_ == "CUBICSPLINE" ? 3 : 1),
+          width_(gltf_component_count(type) * per_value) {
         const Json& input = document.element("accessors", json, "input");
         const Json& output = document.element("accessors", json, "output");
-        if (input.value("type", "") != "SCALAR" ||
-            output.value("type", "") != (N == 3 ? "VEC3" : "VEC4"))
+        if (input.value("type", "") != "SCALAR" || output.value("type", "") != type)
             document.fail("a glTF animation has values that do not fit what it moves");
         if (interpolation_ != "LINEAR" && interpolation_ != "STEP" && per_key_ == 1)
             document.fail("a glTF animation has an unknown interpolation");
         for (const float time : bytes.floats(input, 1)) times_.push_back(double{time});
-        values_ = bytes.floats(output, N);
-        if (times_.empty() || values_.size() != N * per_key_ * times_.size())
+        values_ = bytes.floats(output, gltf_component_count(type));
+        if (times_.empty() || values_.size() != width_ * per_key_ * times_.size())
             document.fail("a glTF animation has not as many values as times");
         const auto is_finite = [](double x) { return std::isfinite(x); };
         if (!std::ranges::all_of(values_, is_finite) || !std::ranges::all_of(times_, is_finite))
@@ -178,28 +179,37 @@ class Sampler {
     }
 
     Value at(double time) const {
+        return between(time, [](const KnotSpan& span, const Value& a, const Value& b) {
+            Value value = a;
+            for (std::size_t i = 0; i < a.size(); ++i) value[i] += span.fraction * (b[i] - a[i]);
+            return value;
+        });
+    }
+
+    /// The same of rotations x, y, z, w, which turn at a steady rate.
+    Value turned_at(double time) const {
+        return between(time, [&](const KnotSpan& span, const Value& a, const Value& b) -> Value {
+            const Rotation turn = turned(rotation(a), rotation(b), span.fraction);
+            return {turn.x, turn.y, turn.z, turn.w};
+        });
+    }
+
+  private:
+    /// `linear(span, a, b)` interpolates linearly between the values of two keys.
+    template <class Linear>
+    Value between(double time, const Linear& linear) const {
         if (times_.size() == 1) return key(0, per_key_ / 2);
         const KnotSpan span = span_of(times_, time);
         const Value a = key(span.first, per_key_ / 2), b = key(span.first + 1, per_key_ / 2);
         if (interpolation_ == "STEP") return span.fraction < 1 ? a : b;
         if (per_key_ == 3) return cubic(span, a, key(span.first, 2), key(span.first + 1, 0), b);
-        if constexpr (N == 4) {
-            const Rotation turn = turned(rotation(a), rotation(b), span.fraction);
-            return {turn.x, turn.y, turn.z, turn.w};
-        } else {
-            Value value{};
-            for (std::size_t i = 0; i < N; ++i) value[i] = a[i] + span.fraction * (b[i] - a[i]);
-            return value;
-        }
+        return linear(span, a, b);
     }
 
-  private:
     /// In a cubic spline, part 0 is the tangent in, 1 the value and 2 the tangent out.
     Value key(std::size_t index, std::size_t part) const {
-        Value value{};
-        for (std::size_t i = 0; i < N; ++i)
-            value[i] = double{values_[N * (per_key_ * index + part) + i]};
-        return value;
+        const float* first = &values_[width_ * (per_key_ * index + part)];
+        return {first, first + width_};
     }
 
     Rotation rotation(const Value& q) const {
@@ -211,8 +221,8 @@ class Sampler {
     static Value cubic(const KnotSpan& span, const Value& a, const Value& out, const Value& in,
                        const Value& b) {
         const double t = span.fraction, t2 = t * t, t3 = t2 * t;
-        Value value{};
-        for (std::size_t i = 0; i < N; ++i)
+        Value value(a.size());
+        for (std::size_t i = 0; i < a.size(); ++i)
             value[i] = (2 * t3 - 3 * t2 + 1) * a[i] + span.width * (t3 - 2 * t2 + t) * out[i] +
                        (3 * t2 - 2 * t3) * b[i] + span.width * (t3 - t2) * in[i];
         return value;
@@ -220,24 +230,52 @@ class Sampler {
 
     const GltfDocument& document_;
     std::string interpolation_;
-    std::size_t per_key_;
+    std::size_t per_key_, width_;
     std::vector<double> times_;
     std::vector<float> values_;
 };
 
-template <std::size_t N>
-void set_once(std::optional<std::array<double, N>>& part, const GltfDocument& document,
-              GltfBytes& bytes, const Json& sampler, double time) {
-    if (!part) part = Sampler<N>(document, bytes, sampler).at(time);
+/// The node that a channel moves; it exists (moves_node).
+const Json& target_node(const GltfDocument& document, const Json& channel) {
+    return document.list(
+        "nodes")[document.whole_number(document.object(channel, "target"), "node", UINT64_MAX)];
+}
+
+/// Sets the part of a pose that a channel moves, unless another one has.
+void set_part(GltfPose& pose, const GltfDocument& document, GltfBytes& bytes, const Json& channel,
+              const Json& sampler, double time) {
+    const std::string path = document.object(channel, "target").value("path", "");
+    if (path == "weights") {
+        if (pose.weights) return;
+        const std::size_t targets = gltf_target_count(document, target_node(document, channel));
+        pose.weights = Sampler(document, bytes, sampler, "SCALAR", targets).at(time);
+    } else if (path == "rotation") {
+        if (pose.rotation) return;
+        const auto q = Sampler(document, bytes, sampler, "VEC4", 1).turned_at(time);
+        pose.rotation = std::array{q[0], q[1], q[2], q[3]};
+    } else {
+        auto& part = path == "scale" ? pose.scale : pose.translation;
+        if (part) return;
+        const auto v = Sampler(document, bytes, sampler, "VEC3", 1).at(time);
+        part = std::array{v[0], v[1], v[2]};
+    }
 }
 
 }  // namespace
 
+std::size_t gltf_target_count(const GltfDocument& document, const nlohmann::json& node) {
+    if (!node.contains("mesh")) return 0;
+    const Json& primitives = document.list(document.element("meshes", node, "mesh"), "primitives");
+    return primitives.empty() ? 0 : document.list(primitives[0], "targets").size();
+}
+
 bool moves_node(const GltfDocument& document, const Json& channel) {
     const Json& target = document.object(channel, "target");
     const std::string path = target.value("path", "");
-    return document.whole_number(target, "node", UINT64_MAX) < document.list("nodes").size() &&
-           (path == "translation" || path == "rotation" || path == "scale");
+    if (document.whole_number(target, "node", UINT64_MAX) >= document.list("nodes").size())
+        return false;
+    if (path == "weights") return gltf_target_count(document, target_node(document, channel)) > 0;
+    return path == "translation" || path == "rotation" || path == "scale";
 }
 
 GltfPoses gltf_poses(const GltfDocument& document, GltfBytes& bytes, double time) {
@@ -250,14 +288,8 @@ GltfPoses gltf_poses(const GltfDocument& document, GltfBytes& bytes, double time
             if (index >= samplers.size())
                 document.fail("a glTF animation refers to a sampler that does not exist");
             const Json& target = document.object(channel, "target");
-            GltfPose& pose = poses[document.whole_number(target, "node", 0)];
-            const std::string path = target.value("path", "");
-            const Json& sampler = samplers[index];
-            if (path == "rotation")
-                set_once(pose.rotation, document, bytes, sampler, time);
-            else
-                set_once(path == "scale" ? pose.scale : pose.translation, document, bytes, sampler,
-                         time);
+            set_part(poses[document.whole_number(target, "node", 0)], document, bytes, channel,
+                     samplers[index], time);
         }
     }
     return poses;
@@ -286,7 +318,7 @@ std::string listed_nodes(const GltfDocument& document, const std::set<std::size_
 
 std::string unused_motion_of(const GltfDocument& document, const GltfUse& use) {
     const nlohmann::json& nodes = document.list("nodes");
-    std::set<std::size_t> animated, skinned;
+    std::set<std::size_t> animated;
     for (const nlohmann::json& animation : document.list("animations")) {
         for (const nlohmann::json& channel : document.list(animation, "channels")) {
             if (use.time && moves_node(document, channel)) continue;
@@ -295,18 +327,9 @@ std::string unused_motion_of(const GltfDocument& document, const GltfUse& use) {
             if (node < nodes.size()) animated.insert(node);
         }
     }
-    for (std::size_t node = 0; node < nodes.size(); ++node) {
-        if (nodes[node].contains("skin")) skinned.insert(node);
-    }
-    if (animated.empty() && skinned.empty()) return {};
-    std::string what;
-    if (!animated.empty())
-        what = (use.time ? "morph animations of " : "animations of ") +
-               listed_nodes(document, animated);
-    if (!skinned.empty())
-        what += fmt::format("{}skins of {}", what.empty() ? "" : " and ",
-                            listed_nodes(document, skinned));
-    return what + " stand still, as the file has them; to move them, export a file for each frame";
+    if (animated.empty()) return {};
+    return "animations of " + listed_nodes(document, animated) +
+           " stand still, as the file has them; to move them, export a file for each frame";
 }
 
 }  // namespace uw

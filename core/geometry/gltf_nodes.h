@@ -22,10 +22,12 @@ struct GltfNode {
     Affine file_from_node;                 // all parents' transforms and its own
 };
 
-/// The parts of a node's own transform that animations replace at a moment.
+/// The parts of a node's own transform, and the weights of its mesh's morph targets, that
+/// animations replace at a moment.
 struct GltfPose {
     std::optional<std::array<double, 3>> translation, scale;
     std::optional<std::array<double, 4>> rotation;  // x, y, z, w, unit
+    std::optional<std::vector<double>> weights;
 };
 
 /// By the node's index.
@@ -43,12 +45,17 @@ std::vector<GltfNode> gltf_nodes(const GltfDocument& document, const GltfPoses& 
 /// passed inspect_gltf. For gltf_*.cpp only.
 GltfPoses gltf_poses(const GltfDocument& document, GltfBytes& bytes, double time);
 
-/// Whether a channel moves a node, and not, say, the weights of morph targets. For gltf_*.cpp only.
+/// How many morph targets the mesh of a node has, by its first primitive: 0 without a mesh. For
+/// gltf_*.cpp only.
+std::size_t gltf_target_count(const GltfDocument& document, const nlohmann::json& node);
+
+/// Whether a channel moves a node, or its vertices by the weights of morph targets. For gltf_*.cpp
+/// only.
 bool moves_node(const GltfDocument& document, const nlohmann::json& channel);
 
 /// A warning, without the file's name, about parts of a file that should move but do not here: the
-/// targets of animations, unless they move at the time of `use`, and nodes with a skin. Empty if
-/// there are none. For gltf_*.cpp only.
+/// targets of animations, unless they move at the time of `use`. Empty if there are none. For
+/// gltf_*.cpp only.
 std::string unused_motion_of(const GltfDocument& document, const GltfUse& use);
 
 }  // namespace uw

@@ -199,6 +199,8 @@ class JoinedMesh {
         return std::move(mesh_);
     }
 
+    const MendedWeights& mended() const { return mended_; }
+
   private:
     const Json* attribute(const GltfPlacement& placement, const char* semantic) const {
         const Json& attributes = (*placement.primitive)["attributes"];
@@ -260,19 +262,54 @@ class JoinedMesh {
 
     void append(const GltfPlacement& placement) {
         const auto first = static_cast<std::uint32_t>(mesh_.vertex_count());
-        append_positions(placement);
+        if (placement.deformation != nullptr)
+            append_deformed(placement);
+        else
+            append_rigid(placement);
         const std::size_t count = mesh_.vertex_count() - first;
-        if (has_normals_) append_normals(placement, count);
         for (std::size_t set = 0; set < 2; ++set) {
             if (has_uvs_[set]) append_uvs(placement, set, count);
         }
         if (has_colors_) append_colors(placement, count);
-        if (has_tangents_) append_tangents(placement, count);
         append_faces(placement, first, static_cast<std::uint32_t>(count));
         if (mesh_.materials.size() > 1) {
             mesh_.triangle_materials.resize(mesh_.triangle_count(), local_.at(placement.material));
         }
         if (has_objects_) mesh_.triangle_objects.resize(mesh_.triangle_count(), placement.object);
+    }
+
+    bool has_own_tangents(const GltfPlacement& placement) const {
+        return attribute(placement, "TANGENT") != nullptr &&
+               attribute(placement, "NORMAL") != nullptr;
+    }
+
+    void append_rigid(const GltfPlacement& placement) {
+        const std::size_t before = mesh_.vertex_count();
+        append_positions(placement);
+        const std::size_t count = mesh_.vertex_count() - before;
+        if (has_normals_) append_normals(placement, count);
+        if (has_tangents_) append_tangents(placement, count);
+        is_mirrored_ = placement.file_from_mesh.determinant() < 0;
+    }
+
+    void append_deformed(const GltfPlacement& placement) {
+        const DeformedPrimitive primitive = deformed(document_, bytes_, placement);
+        mended_.unweighted += primitive.mended().unweighted;
+        mended_.unbalanced += primitive.mended().unbalanced;
+        const auto add = [](std::vector<float>& to, const std::vector<float>& values) {
+            to.insert(to.end(), values.begin(), values.end());
+        };
+        add(mesh_.positions, primitive.positions());
+        const std::size_t vertices = mesh_.vertex_count();
+        if (has_normals_) {
+            if (attribute(placement, "NORMAL") != nullptr) add(mesh_.normals, primitive.normals());
+            mesh_.normals.resize(3 * vertices, 0.0F);
+        }
+        if (has_tangents_) {
+            if (has_own_tangents(placement)) add(mesh_.tangents, primitive.tangents());
+            mesh_.tangents.resize(4 * vertices, 0.0F);
+        }
+        is_mirrored_ = primitive.is_mirrored();
     }
 
     void append_positions(const GltfPlacement& placement) {
@@ -352,12 +389,11 @@ class JoinedMesh {
 
     /// From the file, if it has them; else left at zero for compute_tangents.
     void append_tangents(const GltfPlacement& placement, std::size_t count) {
-        const Json* tangents = attribute(placement, "TANGENT");
-        if (tangents == nullptr || attribute(placement, "NORMAL") == nullptr) {
+        if (!has_own_tangents(placement)) {
             mesh_.tangents.resize(mesh_.tangents.size() + 4 * count, 0.0F);
             return;
         }
-        std::vector<float> values = bytes_.floats(*tangents, 4);
+        std::vector<float> values = bytes_.floats(*attribute(placement, "TANGENT"), 4);
         if (placement.file_from_mesh.determinant() < 0) {  // cross products are reversed
             for (std::size_t at = 3; at < values.size(); at += 4) values[at] = -values[at];
         }
@@ -377,10 +413,9 @@ class JoinedMesh {
         const std::uint64_t mode =
             document_.whole_number(*placement.primitive, "mode", k_triangles);
         // A mirroring transform reverses the corner order (glTF 2.0, 3.7.4).
-        const bool is_mirrored = placement.file_from_mesh.determinant() < 0;
         const auto add = [&](std::size_t a, std::size_t b, std::size_t c) {
             throw_if_stopped();
-            if (is_mirrored) std::swap(b, c);
+            if (is_mirrored_) std::swap(b, c);
             for (const std::size_t k : {a, b, c}) mesh_.triangles.push_back(corners[k]);
         };
         if (mode == k_triangles) {
@@ -399,14 +434,29 @@ class JoinedMesh {
     std::map<std::size_t, std::uint32_t> local_;  // materials by their place in the file
     bool has_normals_ = false, has_colors_ = false, has_alphas_ = false, has_tangents_ = false,
          has_objects_ = false;
+    bool is_mirrored_ = false;  // the placement in progress
     std::array<bool, 2> has_uvs_{};
+    MendedWeights mended_;
 };
 
 }  // namespace
 
 TriangleMesh GltfJoiner::join(const std::vector<GltfPlacement>& placements) {
     JoinedMesh joined(document_, bytes_);
-    return joined.join(placements, materials_);
+    TriangleMesh mesh = joined.join(placements, materials_);
+    mended_.unweighted += joined.mended().unweighted;
+    mended_.unbalanced += joined.mended().unbalanced;
+    return mesh;
+}
+
+DeformedPrimitive deformed(const GltfDocument& document, GltfBytes& bytes,
+                           const GltfPlacement& placement) {
+    return {document,
+            bytes,
+            *placement.primitive,
+            *placement.deformation,
+            placement.file_from_mesh,
+            printable(placement.mesh->value("name", ""))};
 }
 
 }  // namespace uw

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/vector_math.h"
+#include "core/geometry/gltf_deformation.h"
 #include "core/geometry/gltf_document.h"
 #include "core/geometry/mesh.h"
 
@@ -44,8 +45,9 @@ struct GltfPlacement {
     const nlohmann::json* mesh = nullptr;
     const nlohmann::json* primitive = nullptr;
     Affine file_from_mesh;
-    std::size_t material = 0;  // in the file's list; its size: none
-    std::uint32_t object = 0;  // in MeshFile::objects
+    std::size_t material = 0;                      // in the file's list; its size: none
+    std::uint32_t object = 0;                      // in MeshFile::objects
+    const GltfDeformation* deformation = nullptr;  // null: it is rigid
 };
 
 /// Joins primitives into one mesh, placed, and with those of the file's materials that they use.
@@ -56,13 +58,22 @@ class GltfJoiner {
     GltfJoiner(const GltfDocument& document, GltfBytes& bytes, GltfMaterials& materials)
         : document_(document), bytes_(bytes), materials_(materials) {}
 
-    /// Throws InputError for coordinates that are missing, and as GltfMaterials::read.
+    /// Throws InputError for coordinates that are missing, and as GltfMaterials::read and
+    /// DeformedPrimitive.
     TriangleMesh join(const std::vector<GltfPlacement>& placements);
+
+    /// Those of all meshes so far.
+    const MendedWeights& mended() const { return mended_; }
 
   private:
     const GltfDocument& document_;
     GltfBytes& bytes_;
     GltfMaterials& materials_;
+    MendedWeights mended_;
 };
+
+/// The vertices of a placement that deforms. For gltf_*.cpp only. Refers to all.
+DeformedPrimitive deformed(const GltfDocument& document, GltfBytes& bytes,
+                           const GltfPlacement& placement);
 
 }  // namespace uw

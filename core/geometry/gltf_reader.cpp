@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <deque>
 #include <exception>
 #include <iterator>
 #include <numeric>
 #include <utility>
 
 #include "core/base/text.h"
+#include "core/geometry/gltf_deformation.h"
 #include "core/geometry/gltf_document.h"
 #include "core/geometry/gltf_inspection.h"
 #include "core/geometry/gltf_nodes.h"
@@ -131,20 +133,6 @@ std::optional<double> frame_rate_of(const std::vector<double>& key_times) {
     return std::nullopt;
 }
 
-std::vector<Affine> gltf_placements(const std::filesystem::path& file, double time) {
-    try {
-        const GltfDocument document(file);
-        inspect_gltf(document, {});  // the accessors
-        GltfBytes bytes(document);
-        std::vector<Affine> placements;
-        for (const GltfNode& node : gltf_nodes(document, gltf_poses(document, bytes, time)))
-            if (node.json->contains("mesh")) placements.push_back(node.file_from_node);
-        return placements;
-    } catch (const nlohmann::json::exception& error) {
-        fail_broken_gltf(file, error);
-    }
-}
-
 namespace {
 
 using Json = nlohmann::json;
@@ -159,16 +147,19 @@ constexpr std::uint64_t k_triangle_mode = 4, k_last_mode = 6;
 struct MeshUse {
     Affine file_from_node;
     std::uint32_t object = 0;
+    const GltfDeformation* deformation = nullptr;  // null: it is rigid
 };
 
-/// Names the objects of a file and sorts its meshes into those used once and those that several
-/// nodes share.
+/// Names the objects of a file and sorts its meshes into those that deform, those used once and
+/// those that several nodes share.
 class GltfContents {
   public:
-    GltfContents(const GltfDocument& document, const GltfPoses& poses)
-        : document_(document), uses_(document.list("meshes").size()) {
-        for (const GltfNode& node : gltf_nodes(document, poses)) {
-            if (node.json->contains("mesh")) add(node);
+    GltfContents(const GltfDocument& document, GltfBytes& bytes, const GltfPoses& poses)
+        : document_(document), bytes_(bytes), uses_(document.list("meshes").size()) {
+        const std::vector<GltfNode> nodes = gltf_nodes(document, poses);
+        const GltfDeformations deformations(document, bytes, poses, nodes);
+        for (const GltfNode& node : nodes) {
+            if (node.json->contains("mesh")) add(node, deformations.of(node));
         }
         for (const Json& material : document.list("materials")) {
             materials_.push_back(material.value("name", ""));
@@ -179,7 +170,10 @@ class GltfContents {
 
     MeshFile read(GltfJoiner& joiner) {
         MeshFile file;
-        std::vector<GltfPlacement> once;
+        // Those that deform come first, so that their vertices are the same ones at all times: what
+        // is shared may change as nodes are scaled to zero.
+        std::vector<GltfPlacement> once = deforming();
+        const auto rigid = static_cast<std::ptrdiff_t>(once.size());
         for (std::size_t mesh = 0; mesh < uses_.size(); ++mesh) {
             if (is_shared(mesh)) {
                 file.shared.push_back(share(mesh, joiner, once));
@@ -188,22 +182,47 @@ class GltfContents {
             }
         }
         // In the order of the nodes, as far as one mesh is built of them.
-        std::ranges::stable_sort(once, {}, &GltfPlacement::object);
+        std::ranges::stable_sort(once.begin() + rigid, once.end(), {}, &GltfPlacement::object);
         file.mesh = joiner.join(once);
         file.objects = std::move(objects_);
         file.materials = std::move(materials_);
         return file;
     }
 
+    const std::vector<Affine>& placements() const { return placements_; }
+
+    GltfMoment moment() const {
+        GltfMoment result{placements_, std::vector<bool>(objects_.size()), {}};
+        for (const GltfPlacement& placement : deforming()) {
+            result.deforms[placement.object] = true;
+            const std::vector<float> positions = deformed(document_, bytes_, placement).positions();
+            result.vertices.insert(result.vertices.end(), positions.begin(), positions.end());
+        }
+        return result;
+    }
+
   private:
-    void add(const GltfNode& node) {
+    void add(const GltfNode& node, std::optional<GltfDeformation> deformation) {
         const Json& mesh = document_.element("meshes", *node.json, "mesh");
         const std::uint64_t index = document_.whole_number(*node.json, "mesh", 0);
         std::string name = node.json->value("name", "");
         if (name.empty()) name = mesh.value("name", "");
         if (name.empty()) name = fmt::format("node{}", node.index);
-        uses_[index].push_back({node.file_from_node, static_cast<std::uint32_t>(objects_.size())});
+        MeshUse use{node.file_from_node, static_cast<std::uint32_t>(objects_.size())};
+        if (deformation) {
+            use.deformation = &deformations_.emplace_back(*std::move(deformation));
+            deforming_.emplace_back(index, use);
+        } else {
+            uses_[index].push_back(use);
+        }
         objects_.push_back(std::move(name));
+        placements_.push_back(node.file_from_node);
+    }
+
+    std::vector<GltfPlacement> deforming() const {
+        std::vector<GltfPlacement> placements;
+        for (const auto& [mesh, use] : deforming_) place(mesh, use, placements);
+        return placements;
     }
 
     std::uint64_t triangles_of(std::size_t mesh) const {
@@ -229,7 +248,8 @@ class GltfContents {
             const std::uint64_t mode = document_.whole_number(primitive, "mode", k_triangle_mode);
             if (mode < k_triangle_mode) continue;  // points and lines
             if (mode > k_last_mode) document_.fail("a glTF primitive has an unknown mode");
-            GltfPlacement placement{&json, &primitive, use.file_from_node, materials, use.object};
+            GltfPlacement placement{&json,     &primitive, use.file_from_node,
+                                    materials, use.object, use.deformation};
             if (primitive.contains("material")) {
                 placement.material = document_.whole_number(primitive, "material", 0);
                 if (placement.material >= materials) {
@@ -257,33 +277,81 @@ class GltfContents {
     }
 
     const GltfDocument& document_;
-    std::vector<std::vector<MeshUse>> uses_;  // by mesh
+    GltfBytes& bytes_;
+    std::vector<std::vector<MeshUse>> uses_;                  // by mesh; of those that are rigid
+    std::vector<std::pair<std::size_t, MeshUse>> deforming_;  // and the numbers of their meshes
+    std::deque<GltfDeformation> deformations_;                // in place, for the uses
     std::vector<std::string> objects_, materials_;
+    std::vector<Affine> placements_;  // by object
 };
 
 }  // namespace
 
-MeshFile read_gltf(const std::filesystem::path& file, const GltfUse& use,
-                   std::vector<std::string>& warnings) {
+/// What a source keeps. Its parts refer to each other.
+struct GltfSource::Parts {
+    Parts(const std::filesystem::path& file, const GltfUse& use)
+        : document(file),
+          ignored(inspect_gltf(document, use)),
+          bytes(document),
+          materials(document, bytes, use) {}
+
+    GltfContents contents(const std::optional<double>& time) {
+        GltfPoses poses;
+        if (time) poses = gltf_poses(document, bytes, *time);
+        return {document, bytes, poses};
+    }
+
+    GltfDocument document;
+    std::vector<std::string> ignored;
+    GltfBytes bytes;
+    GltfMaterials materials;
+};
+
+GltfSource::GltfSource(std::filesystem::path file, const GltfUse& use)
+    : use_(use), file_(std::move(file)) {
     try {
-        const GltfDocument document(file);
-        const std::vector<std::string> ignored = inspect_gltf(document, use);
-        if (!ignored.empty()) {
+        parts_ = std::make_unique<Parts>(file_, use_);
+    } catch (const Json::exception& error) {
+        fail_broken_gltf(file_, error);
+    }
+}
+
+GltfSource::~GltfSource() = default;
+
+MeshFile GltfSource::read(const std::optional<double>& time, std::vector<std::string>& warnings) {
+    try {
+        const GltfDocument& document = parts_->document;
+        if (!parts_->ignored.empty()) {
             warnings.push_back(
                 fmt::format("{}: ignored: {}", document.name(),
-                            printable(fmt::format("{}", fmt::join(ignored, ", ")), 1000)));
+                            printable(fmt::format("{}", fmt::join(parts_->ignored, ", ")), 1000)));
         }
-        if (const std::string motion = unused_motion_of(document, use); !motion.empty()) {
+        use_.time = time;
+        if (const std::string motion = unused_motion_of(document, use_); !motion.empty()) {
             warnings.push_back(fmt::format("{}: {}", document.name(), motion));
         }
-        GltfBytes bytes(document);
-        GltfMaterials materials(document, bytes, use);
-        GltfJoiner joiner(document, bytes, materials);
-        GltfPoses poses;
-        if (use.time) poses = gltf_poses(document, bytes, *use.time);
-        return GltfContents(document, poses).read(joiner);
+        GltfJoiner joiner(document, parts_->bytes, parts_->materials);
+        MeshFile meshes = parts_->contents(time).read(joiner);
+        joiner.mended().report(document.name(), warnings);
+        return meshes;
     } catch (const Json::exception& error) {
-        fail_broken_gltf(file, error);
+        fail_broken_gltf(file_, error);
+    }
+}
+
+std::vector<Affine> GltfSource::placements(double time) {
+    try {
+        return parts_->contents(time).placements();
+    } catch (const Json::exception& error) {
+        fail_broken_gltf(file_, error);
+    }
+}
+
+GltfMoment GltfSource::moment(double time) {
+    try {
+        return parts_->contents(time).moment();
+    } catch (const Json::exception& error) {
+        fail_broken_gltf(file_, error);
     }
 }
 

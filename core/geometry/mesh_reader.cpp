@@ -182,16 +182,6 @@ void ClampedValues::report(const std::string& name, std::vector<std::string>& wa
 
 namespace {
 
-MeshFile read_any(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                  const GltfUse& use) {
-    const std::string extension = lower_case(file.extension().string());
-    const std::string name = file.stem().string();
-    if (extension == ".ply") return {read_ply(file, warnings), {}, {name}, {}};
-    if (extension == ".obj") return read_obj(file, use.pbr, warnings);
-    if (extension == ".stl") return {read_stl(file), {}, {name}, {}};
-    return read_gltf(file, use, warnings);
-}
-
 void check_file(const std::filesystem::path& file) {
     const std::string extension = lower_case(file.extension().string());
     const bool known = extension == ".gltf" || extension == ".glb" || extension == ".obj" ||
@@ -242,10 +232,20 @@ void drop_coincident_placements(MeshFile& content, const std::string& name,
 
 }  // namespace
 
-MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
-                   const GltfUse& use) {
-    check_file(file);
-    MeshFile content = read_any(file, warnings, use);
+MeshFile MeshSource::read_any(const std::optional<double>& time,
+                              std::vector<std::string>& warnings) {
+    const std::string extension = lower_case(file_.extension().string());
+    const std::string name = file_.stem().string();
+    if (extension == ".ply") return {read_ply(file_, warnings), {}, {name}, {}};
+    if (extension == ".obj") return read_obj(file_, use_.pbr, warnings);
+    if (extension == ".stl") return {read_stl(file_), {}, {name}, {}};
+    if (!gltf_) gltf_ = std::make_shared<GltfSource>(file_, use_);
+    return gltf_->read(time, warnings);
+}
+
+MeshFile MeshSource::read(const std::optional<double>& time, std::vector<std::string>& warnings) {
+    check_file(file_);
+    MeshFile content = read_any(time, warnings);
     DroppedTriangles dropped;
     ClampedValues clamped;
     const auto make_sane = [&](TriangleMesh& mesh) {
@@ -258,15 +258,20 @@ MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& 
     std::erase_if(content.shared, [](const SharedMesh& shared) {
         return shared.mesh.triangles.empty() || shared.placements.empty();
     });
-    drop_coincident_placements(content, file.string(), warnings);
-    dropped.report(file.string(), warnings);
-    clamped.report(file.string(), warnings);
-    if (!content.has_triangles() && !use.camera_or_lamps) {
-        throw InputError(file.string() +
+    drop_coincident_placements(content, file_.string(), warnings);
+    dropped.report(file_.string(), warnings);
+    clamped.report(file_.string(), warnings);
+    if (!content.has_triangles() && !use_.camera_or_lamps) {
+        throw InputError(file_.string() +
                          ": the mesh has no triangles; check what was exported, or take the camera "
                          "or lamps of a glTF file (camera: true, lamps: all)");
     }
     return content;
+}
+
+MeshFile read_mesh(const std::filesystem::path& file, std::vector<std::string>& warnings,
+                   const GltfUse& use) {
+    return MeshSource(file, use).read(warnings);
 }
 
 std::vector<std::filesystem::path> files_named_by_mesh(const std::filesystem::path& file) {

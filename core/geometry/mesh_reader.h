@@ -2,7 +2,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/mesh.h"
@@ -49,9 +52,31 @@ struct ClampedValues {
 /// which is none.
 void clamp_values(TriangleMesh& mesh, ClampedValues& clamped);
 
+class GltfSource;  // core/geometry/gltf_reader.h
+
+/// A mesh file that is read at several times of its animations: what a glTF file's first reading
+/// has loaded of its bytes and textures is kept.
+class MeshSource {
+  public:
+    MeshSource(std::filesystem::path file, const GltfUse& use)
+        : file_(std::move(file)), use_(use) {}
+
+    /// Reads it as read_mesh does, at the time of `use`, or at another one.
+    MeshFile read(std::vector<std::string>& warnings) { return read(use_.time, warnings); }
+    MeshFile read(const std::optional<double>& time, std::vector<std::string>& warnings);
+
+  private:
+    MeshFile read_any(const std::optional<double>& time, std::vector<std::string>& warnings);
+
+    std::filesystem::path file_;
+    GltfUse use_;
+    std::shared_ptr<GltfSource> gltf_;  // null until it is read, and for other formats
+};
+
 /// Reads what a glTF (.gltf, .glb), OBJ, PLY or STL file shows, in the file's coordinates: no axis
 /// or unit is converted. For glTF, the node hierarchy, materials (MeshMaterial), vertex colours,
-/// normals and tangents are read; for OBJ, materials, vertex colours and normals; for PLY, vertex
+/// normals and tangents are read, with the vertices of skins and morph targets where these have
+/// them at the time of `use`; for OBJ, materials, vertex colours and normals; for PLY, vertex
 /// colours and normals. A mesh without material has reflectance 0.5, or its vertex colours.
 /// Polygons are split into triangles, degenerate triangles and those with invalid corners are
 /// dropped, and no normals are generated.

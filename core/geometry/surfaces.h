@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -50,7 +51,7 @@ struct SurfaceHit {
     bool is_water_surface = false;      // viewed from below (core/light/submerged.h)
     /// The number of its glass in GlassSurfaces, from 1; 0: it is not of glass.
     std::uint32_t glass = 0;
-    // For Surfaces::material: the triangle and the position on it.
+    // For Surfaces::material and corners: the triangle and the position on it.
     std::uint32_t geometry = 0, triangle = 0;
     double u = 0, v = 0;
     SurfaceSpread spread{};  // over which its textures were taken
@@ -74,6 +75,12 @@ class Surfaces {
     /// Material properties beyond diffuse reflection at a hit; none unless
     /// SurfaceHit::has_material, and none by default.
     virtual SurfaceMaterial material(const SurfaceHit& /*hit*/) const { return {}; }
+
+    /// The vertices of the triangle of a hit, by their numbers in its mesh (TriangleMesh); none for
+    /// other shapes, for instances, and by default.
+    virtual std::optional<std::array<std::uint32_t, 3>> corners(const SurfaceHit& /*hit*/) const {
+        return std::nullopt;
+    }
 
     /// Whether any surface may emit light; true where that is not known.
     virtual bool may_emit() const { return true; }

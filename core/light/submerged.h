@@ -40,6 +40,9 @@ class SubmergedSurfaces final : public Surfaces, public TexturedSurfaces {
 
     bool closest_hit(const Ray& ray, double s_end, SurfaceHit& hit) const override;
     SurfaceMaterial material(const SurfaceHit& hit) const override;
+    std::optional<std::array<std::uint32_t, 3>> corners(const SurfaceHit& hit) const override {
+        return hit.is_water_surface ? std::nullopt : below_->corners(hit);
+    }
     bool may_emit() const override { return sky_.radiance || below_->may_emit(); }
     double hit_distance(const Ray& ray) const override;
     bool occluded(const Point3& from, const Point3& to) const override;

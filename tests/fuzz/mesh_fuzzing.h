@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,11 +11,13 @@
 
 namespace uw::fuzz {
 
-/// Reads a mesh; what comes of it can be traced: corners exist, and all that they carry is finite.
-inline void read_mesh_file(const std::filesystem::path& file) {
+/// Reads a mesh at a time of its animations, if any; what comes of it can be traced: corners exist,
+/// and all that they carry is finite.
+inline void read_mesh_file(const std::filesystem::path& file,
+                           const std::optional<double>& time = {}) {
     parse([&] {
         std::vector<std::string> warnings;
-        const MeshFile content = read_mesh(file, warnings, GltfUse{.pbr = true});
+        const MeshFile content = read_mesh(file, warnings, GltfUse{.pbr = true, .time = time});
         for (const std::string& warning : warnings) check_message(warning);
         for (const std::uint32_t corner : content.mesh.triangles)
             for (std::size_t k = 0; k < 3; ++k)

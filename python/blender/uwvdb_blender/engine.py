@@ -25,6 +25,8 @@ SECONDS_BETWEEN_LINES = 5
 # How much, differs from frame to frame; it is said of the first.
 LEFT_OUT = "single scattering leaves out"
 TOO_DARK = "the picture is dark"
+# Said of the keys of the file of meshes, which are where the shutter opens and closes.
+OF_KEYS = "its keys are those of frames at"
 DARK = 0.1  # of white
 
 _said = set()  # notes of this render, of which an animation repeats most
@@ -203,7 +205,7 @@ class UwvdbEngine(bpy.types.RenderEngine):
         arguments = self._image_arguments(depsgraph, path, written, size, out)
         for line in program.run(arguments, folder, self.test_break, self._on_progress):
             kind, _, text = line.partition(": ")
-            if kind == "warning" or kind == "note" and not _has_said(LEFT_OUT):
+            if OF_KEYS not in text and (kind == "warning" or kind == "note" and not _has_said(LEFT_OUT)):
                 notes.add(written.words.of(text))
         return exr.read(out)
 

@@ -68,20 +68,27 @@ class Glb:
 
     def add_moving_node(self, name, mesh, times, poses):
         """A mesh that moves: for each time [s] (location, quaternion, scale)."""
-        node = len(self._nodes)
         self._nodes.append({"name": name, "mesh": mesh})
-        animations = self._content.json["animations"]
-        if not animations:
-            animations.append({"channels": [], "samplers": []})
-        animation = animations[0]
         at = self.add_array(numpy.array(times))
         values = {"translation": [list(location) for location, _, _ in poses],
                   "rotation": [[q.x, q.y, q.z, q.w] for _, q, _ in poses],
                   "scale": [list(scale) for _, _, scale in poses]}
         for path, rows in values.items():
-            animation["samplers"].append({"input": at, "output": self.add_array(numpy.array(rows))})
-            animation["channels"].append({"sampler": len(animation["samplers"]) - 1,
-                                          "target": {"node": node, "path": path}})
+            self._animate(path, at, self.add_array(numpy.array(rows)))
+
+    def add_weights(self, times, rows):
+        """Of the morph targets of the node that was added last, for each time [s]."""
+        self._animate("weights", self.add_array(numpy.array(times)), self.add_array(numpy.array(rows).reshape(-1)))
+
+    def _animate(self, path, times, values):
+        """Moves a part of the node that was added last."""
+        animations = self._content.json["animations"]
+        if not animations:
+            animations.append({"channels": [], "samplers": []})
+        animation = animations[0]
+        animation["samplers"].append({"input": times, "output": values})
+        animation["channels"].append({"sampler": len(animation["samplers"]) - 1,
+                                      "target": {"node": len(self._nodes) - 1, "path": path}})
 
     def moved(self, matrices):
         """The same file with its nodes, all at rest, at other places."""

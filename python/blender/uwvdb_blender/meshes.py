@@ -102,6 +102,7 @@ class MeshFile:
         self._notes, self._known, self._bakes = notes, known, bakes
         self._materials = materials.Exporter(self.glb, notes)
         self._meshes, self._begun = {}, {}
+        self._weights = {}  # of the morph targets of meshes that deform, by moment
 
     @property
     def is_empty(self):
@@ -120,7 +121,8 @@ class MeshFile:
     def add_all(self, depsgraph, to_metres, motion):
         for instance in surfaces(depsgraph):
             shown = instance.object
-            mesh = self._mesh(instance, depsgraph)
+            shapes = motion.shapes(shown.name_full) if motion is not None else None
+            mesh = self._mesh(instance, depsgraph, shapes=shapes)
             if mesh is None:
                 continue
             poses = motion.poses(key_of(instance)) if motion is not None else None
@@ -128,15 +130,17 @@ class MeshFile:
                 self.glb.add_node(shown.name, mesh, to_metres @ instance.matrix_world)
             else:
                 self.glb.add_moving_node(shown.name, mesh, motion.times, poses)
+            if shapes is not None and mesh in self._weights:
+                self.glb.add_weights(motion.times, self._weights[mesh])
             if is_held_out(instance, depsgraph.view_layer):
                 self.held_out.add(shown.name)
             self.pass_indices.append(shown.pass_index)
             self.keys.append(key_of(instance))
         self.material_indices = self._materials.pass_indices
 
-    def _mesh(self, instance, depsgraph, end=math.inf):
+    def _mesh(self, instance, depsgraph, end=math.inf, shapes=None):
         """Its number in the file; None if nothing of it is seen. Raises _TimeIsUp after that time, and goes
-        on from there when it is called again."""
+        on from there when it is called again. `shapes` are those of the moments, of what deforms."""
         shown = instance.object
         variant = self._bakes.variant(instance, depsgraph) if self._bakes is not None else None
         is_hole = is_held_out(instance, depsgraph.view_layer)
@@ -157,8 +161,11 @@ class MeshFile:
                 self._note_missing(shown, corners, part.exported)
             if self._known is not None and _shows_its_own(shown, depsgraph):
                 self._known[shown.name_full] = corners
+            targets = corners.others_of(shapes or [])
             self._meshes[key] = self.glb.add_mesh(
-                shown.data.name, lambda glb: corners.primitives(glb, parts)) if parts else None
+                shown.data.name, lambda glb: corners.primitives(glb, parts, targets)) if parts else None
+            if targets:
+                self._weights[self._meshes[key]] = [[float(shape is target) for target in targets] for shape in shapes]
         return self._meshes[key]
 
     def _known_corners(self, shown, depsgraph, slots):
@@ -246,6 +253,25 @@ class _Reading:
         read(self.mesh)
 
 
+class Shape:
+    """Where the vertices of an object are at a moment, and its normals."""
+
+    def __init__(self, mesh):
+        self.size = _size(mesh)
+        self.positions = _read(mesh.vertices, "co", 3, numpy.float32)
+        self.normals_of, self.normals = _read_normals(mesh)
+
+    @classmethod
+    def of(cls, shown):
+        try:
+            return cls(shown.to_mesh())
+        finally:
+            shown.to_mesh_clear()
+
+    def __eq__(self, other):
+        return self.size == other.size and numpy.array_equal(self.positions, other.positions)
+
+
 class Corners:
     """What the corners of a mesh's faces have. Blender's own data do not stay, and reading them is slow: what
     can be told without it is not read, and they are read in parts."""
@@ -287,21 +313,16 @@ class Corners:
         self._positions = _read(mesh.vertices, "co", 3, numpy.float32)
 
     def _read_normals(self, mesh):
-        if hasattr(mesh, "normals_domain"):  # Blender 4.1
-            self._normals_of = mesh.normals_domain
-        else:
-            are_smooth = _read(mesh.polygons, "use_smooth", 1, bool)
-            self._normals_of = ("CORNER" if mesh.use_auto_smooth else "POINT" if are_smooth.all() else
-                                "CORNER" if are_smooth.any() else "FACE")
-        if self._normals_of == "POINT":
-            self._normals = _read(mesh.vertex_normals, "vector", 3, numpy.float32)
-        elif self._normals_of == "FACE":
-            self._normals = _read(mesh.polygon_normals, "vector", 3, numpy.float32)
-        elif hasattr(mesh, "calc_normals_split"):  # Blender 4.0 has corner_normals, too, but they are empty
-            mesh.calc_normals_split()
-            self._normals = _read(mesh.loops, "normal", 3, numpy.float32)
-        else:
-            self._normals = _read(mesh.corner_normals, "vector", 3, numpy.float32)
+        self._normals_of, self._normals = _read_normals(mesh)
+
+    def others_of(self, shapes):
+        """Those of an object's shapes that this is not, each once."""
+        others = []
+        for shape in shapes:
+            if (shape.size == self._size and not any(shape is other for other in others)
+                    and not numpy.array_equal(shape.positions, self._positions)):
+                others.append(shape)
+        return others
 
     def used_slots(self):
         if self._count == 0:
@@ -360,18 +381,23 @@ class Corners:
                 values = _read(attribute.data, "color", 4, numpy.float32)
                 self.colours[name] = (values, attribute.domain == "CORNER")
 
-    def primitives(self, glb, parts):
-        return [self._primitive(glb, part) for part in parts]
+    def primitives(self, glb, parts, targets=()):
+        """`targets` are shapes that the mesh can be given."""
+        return [self._primitive(glb, part, targets) for part in parts]
 
-    def _primitive(self, glb, part):
+    def _primitive(self, glb, part, targets):
         corners = self._triangles()
         if self._which is None:
             used, indices = slice(None), corners
         else:
             used, indices = numpy.unique(corners[self._which == part.slot], return_inverse=True)
         attributes = {name: glb.add_array(values) for name, values in self._attributes(used, part.exported)}
-        return {"attributes": attributes, "material": part.number,
-                "indices": glb.add_array(indices.reshape(-1))}
+        primitive = {"attributes": attributes, "material": part.number,
+                     "indices": glb.add_array(indices.reshape(-1))}
+        if targets:
+            primitive["targets"] = [{name: glb.add_array(values) for name, values in self._changes(used, target)}
+                                    for target in targets]
+        return primitive
 
     def _triangles(self):
         """Three corners each, in the order of the faces."""
@@ -391,12 +417,19 @@ class Corners:
         triangles[firsts[flipped] + 1] = self._starts[flipped, None] + numpy.array([1, 2, 3])
         return triangles
 
-    def _corner_normals(self, used):
+    def _corner_normals(self, used, normals=None):
+        normals = self._normals if normals is None else normals
         if self._normals_of == "POINT":
-            return self._normals[self._vertices[used]]
+            return normals[self._vertices[used]]
         if self._normals_of == "FACE":
-            return numpy.repeat(self._normals, self._totals, axis=0)[used]
-        return self._normals[used]
+            return numpy.repeat(normals, self._totals, axis=0)[used]
+        return normals[used]
+
+    def _changes(self, used, shape):
+        """What a shape adds to the attributes, as glTF names them."""
+        yield "POSITION", (shape.positions - self._positions)[self._vertices[used]]
+        if shape.normals_of == self._normals_of:
+            yield "NORMAL", self._corner_normals(used, shape.normals) - self._corner_normals(used)
 
     def _attributes(self, used, exported):
         """As glTF names them."""
@@ -415,6 +448,24 @@ class Corners:
             values = numpy.clip(values[used if are_of_corners else vertices], 0, 1)  # linear, as glTF's
             values[:, 3] = 1
             yield "COLOR_0", values
+
+
+def _read_normals(mesh):
+    """(of what they are: POINT, FACE or CORNER; the normals)."""
+    if hasattr(mesh, "normals_domain"):  # Blender 4.1
+        normals_of = mesh.normals_domain
+    else:
+        are_smooth = _read(mesh.polygons, "use_smooth", 1, bool)
+        normals_of = ("CORNER" if mesh.use_auto_smooth else "POINT" if are_smooth.all() else
+                      "CORNER" if are_smooth.any() else "FACE")
+    if normals_of == "POINT":
+        return normals_of, _read(mesh.vertex_normals, "vector", 3, numpy.float32)
+    if normals_of == "FACE":
+        return normals_of, _read(mesh.polygon_normals, "vector", 3, numpy.float32)
+    if hasattr(mesh, "calc_normals_split"):  # Blender 4.0 has corner_normals, too, but they are empty
+        mesh.calc_normals_split()
+        return normals_of, _read(mesh.loops, "normal", 3, numpy.float32)
+    return normals_of, _read(mesh.corner_normals, "vector", 3, numpy.float32)
 
 
 def _read(items, name, width, kind):

@@ -1,9 +1,5 @@
 """Where everything is at other moments than the frame's own, for motion blur and the Vector pass."""
 
-import zlib
-
-import numpy
-
 from . import meshes
 
 CAMERA = "the camera"  # its key; others are tuples
@@ -16,7 +12,7 @@ class Motion:
         self.frames = frames
         self.times = [frame / rate for frame in frames]
         self._matrices = [{} for _ in frames]
-        self._shapes = {}  # checksums of the vertices of what may deform, by object
+        self._shapes = {}  # of what may deform, by object: by moment
 
     def gather(self, depsgraph, at, world_from_camera, to_metres):
         """Keeps where everything is in the scene as it is evaluated now, as frames[at]."""
@@ -28,13 +24,25 @@ class Motion:
             if shown.type in meshes.SURFACES and meshes.may_deform(shown):
                 shapes = self._shapes.setdefault(shown.name_full, {})
                 if at not in shapes:
-                    shapes[at] = _shape(shown)
+                    shape = meshes.Shape.of(shown)
+                    # One that stays the same is kept once.
+                    shapes[at] = next((known for known in shapes.values() if known == shape), shape)
         known[CAMERA] = world_from_camera
 
     @property
-    def deforming(self):
-        """Names of the objects whose vertices move against each other, or change in number."""
-        return {name for name, shapes in self._shapes.items() if len(set(shapes.values())) > 1}
+    def changing(self):
+        """Names of the objects whose vertices or faces change in number."""
+        return {name for name, shapes in self._shapes.items()
+                if len({shape.size for shape in shapes.values()}) > 1}
+
+    def shapes(self, name):
+        """An object's shape at each time; None if it keeps it, changes its vertices in number, or is not there
+        all the time."""
+        shapes = self._shapes.get(name, {})
+        if len(shapes) < len(self.frames) or name in self.changing:
+            return None
+        shapes = [shapes[at] for at in range(len(self.frames))]
+        return shapes if any(shape is not shapes[0] for shape in shapes) else None
 
     def _of(self, key):
         """Its matrix at each time; None if it rests, or is not there all the time."""
@@ -72,10 +80,3 @@ class Motion:
     def camera_matrices(self, key):
         return self._of(key)
 
-
-def _shape(shown):
-    mesh = shown.to_mesh()
-    vertices = numpy.empty(3 * len(mesh.vertices), numpy.float32)
-    mesh.vertices.foreach_get("co", vertices)
-    shown.to_mesh_clear()
-    return len(vertices), zlib.crc32(vertices.tobytes())

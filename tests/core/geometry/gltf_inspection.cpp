@@ -149,11 +149,22 @@ TEST_F(GltfInspection, VerticesHaveAllOfTheirAttributes) {
 TEST_F(GltfInspection, PrimitivesMayBeNoTriangles) {
     EXPECT_EQ(inspect({{"meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"mode":1}]}])"}}),
               IgnoredNames{"points and lines"});
-    EXPECT_EQ(inspect({{"meshes", R"([{"primitives":[{"attributes":{"POSITION":0},
-                                      "targets":[{"POSITION":0}]}]}])"}}),
-              IgnoredNames{"morph targets"});
     expect_refused({{"meshes", R"([{"primitives":[{"attributes":{"POSITION":0},"indices":0}]}])"}},
                    "indices are not whole numbers");
+}
+
+// Accessor 0 is of three numbers per vertex, 3 of four.
+TEST_F(GltfInspection, MorphTargetsFitTheirPrimitives) {
+    const auto meshes = [](const std::string& primitives) {
+        return GltfChanges{{"meshes", R"([{"primitives":[)" + primitives + "]}]"}};
+    };
+    const auto with = [](const std::string& targets) {
+        return R"({"attributes":{"POSITION":0},"targets":[)" + targets + "]}";
+    };
+    EXPECT_EQ(inspect(meshes(with(R"({"POSITION":0,"TANGENT":0},{"NORMAL":0})"))), IgnoredNames{});
+    expect_refused(meshes(with(R"({"TANGENT":3})")), "TANGENT has the invalid type 'VEC4'");
+    expect_refused(meshes(with(R"({"POSITION":9})")), "an accessor that does not exist");
+    expect_refused(meshes(with("{}") + "," + with("{},{}")), "the same number of morph targets");
 }
 
 }  // namespace

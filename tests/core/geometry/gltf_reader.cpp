@@ -177,8 +177,7 @@ TEST_F(MeshReaderGltf, NamesWhatWouldMoveInOneLine) {
                         {"target":{"node":2,"path":"scale"}},{"target":{"node":99}},{}]},
                         {"channels":[{"target":{"node":1,"path":"translation"}}]}])"}}));
     ASSERT_EQ(warnings_.size(), 1U);
-    EXPECT_NE(warnings_[0].find("animations of 'lid', 'node2' and skins of 'fish' stand still"),
-              std::string::npos)
+    EXPECT_NE(warnings_[0].find("animations of 'lid', 'node2' stand still"), std::string::npos)
         << warnings_[0];
 }
 

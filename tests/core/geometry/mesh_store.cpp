@@ -8,6 +8,7 @@
 
 #include "tests/support/geometry_descs.h"
 #include "tests/support/meshes/mesh_fixtures.h"
+#include "tests/support/meshes/vehicle_gltf.h"
 
 namespace uw {
 namespace {
@@ -56,6 +57,28 @@ TEST_F(Meshes, ThatStandStillAreReadOnce) {
     EXPECT_EQ(load(still_), first);
     store_.keep_only({moving_});
     EXPECT_NE(load(still_), first);
+}
+
+// A time of the animation gives what a file read for it alone gives, in whatever order.
+TEST_F(Meshes, OfAnAnimatedFileHaveThePlacesOfEachTime) {
+    GeometryDesc desc;
+    desc.file = folder_.write("vehicle.gltf", test::vehicle_gltf());
+    desc.animation = TimeRange{0, 0.5};
+    const auto alone = [&](double time) {
+        GeometryDesc then = desc;
+        then.time = time;
+        return MeshStore().load(then, {}, std::nullopt, warnings_)->mesh->mesh.positions;
+    };
+    std::vector<float> last;
+    for (const double time : {0.1, 0.3, 0.2, 0.1}) {
+        desc.time = time;
+        store_.keep_only({desc});
+        const auto surfaces = load(desc);
+        EXPECT_EQ(load(desc), surfaces);
+        EXPECT_EQ(surfaces->mesh->mesh.positions, alone(time)) << time;
+        EXPECT_NE(surfaces->mesh->mesh.positions, last);
+        last = surfaces->mesh->mesh.positions;
+    }
 }
 
 TEST_F(Meshes, OfAFileThatChangedAreReadAgain) {

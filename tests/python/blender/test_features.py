@@ -47,13 +47,11 @@ def in_collection(**settings):
     on(bpy.context.view_layer.layer_collection.children["Group"], **settings)
 
 
-def deform():
-    key = thing().shape_key_add(name="Basis")
-    key = thing().shape_key_add(name="Bent")
-    key.data[0].co.x += 1
-    for frame, value in ((0, 0), (2, 1)):
-        key.value = value
-        key.keyframe_insert("value", frame=frame)
+def change():
+    modifier = thing().modifiers.new("Row", "ARRAY")
+    for frame, count in ((0, 1), (2, 9)):
+        modifier.count = count
+        modifier.keyframe_insert("count", frame=frame)
     bpy.context.scene.render.use_motion_blur = True
 
 
@@ -128,7 +126,7 @@ PROVOKED = {
     "shadow catchers": lambda: on(thing(), is_shadow_catcher=True),
     "casts a shadow here, although": lambda: on(thing(), visible_shadow=False),
     "visible to all light": lambda: on(thing(), visible_glossy=False),
-    "deforms": deform,
+    "changes its vertices or faces in number": change,
     "its own Motion Blur is off": blurred_less,
     "not culled": cull,
     "Clip Start or End": far_away,
@@ -261,9 +259,15 @@ def test_things_near_the_camera():
     assert not said(), said()
 
 
-def test_what_only_moves_does_not_deform():
+def test_what_only_moves_or_deforms_needs_no_word():
     scene = plain_scene()
     thing().modifiers.new("Round", "SUBSURF")
+    thing().shape_key_add(name="Basis")
+    key = thing().shape_key_add(name="Bent")
+    key.data[0].co.x += 1
+    for frame, value in ((0, 0), (2, 1)):
+        key.value = value
+        key.keyframe_insert("value", frame=frame)
     for frame, x in ((0, 0), (2, 1)):
         thing().location.x = x
         thing().keyframe_insert("location", frame=frame)

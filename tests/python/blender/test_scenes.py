@@ -220,6 +220,86 @@ def test_vector_pass_against_cycles():
     assert numpy.abs(theirs).max() > 2 and numpy.quantile(off, 0.98) < 0.02
 
 
+def bending_board(material=None):
+    """A board of many vertices across the view, whose right half an armature turns: by 0.2 rad at frame 2."""
+    board = mesh("Board", [(0.25 * column - 1, 0, z) for column in range(9) for z in (-0.6, 0.6)],
+                 [(2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1) for k in range(8)], location=(0, 6, 0))
+    if material is not None:
+        board.data.materials.append(material)
+    data = bpy.data.armatures.new("Spine")
+    spine = add("Spine", data, location=(0, 6, 0))
+    bpy.context.view_layer.objects.active = spine
+    bpy.ops.object.mode_set(mode="EDIT")
+    for name, x in (("Left", -1), ("Right", 0)):
+        bone = data.edit_bones.new(name)
+        bone.head, bone.tail = (x, 0, 0), (x + 1, 0, 0)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    for name in ("Left", "Right"):
+        group = board.vertex_groups.new(name=name)
+        for vertex in board.data.vertices:
+            share = min(max(vertex.co.x + 0.5, 0), 1)
+            group.add([vertex.index], share if name == "Right" else 1 - share, "ADD")
+    board.modifiers.new("Spine", "ARMATURE").object = spine
+    bone = spine.pose.bones["Right"]
+    bone.rotation_mode = "XYZ"
+    for frame in (1, 3):
+        bone.rotation_euler.z = 0.2 * (frame - 1)
+        bone.rotation_euler.x = 0.1 * (frame - 1)
+        bone.keyframe_insert("rotation_euler", frame=frame)
+    for curve in spine.animation_data.action.fcurves:
+        for key in curve.keyframe_points:
+            key.interpolation = "LINEAR"
+    return board
+
+
+def test_vectors_of_what_deforms_against_cycles():
+    """A board bent by an armature; the same with its bending as a shape key of the mesh, and Blender's own object
+    moving besides."""
+    for kind in ("armature", "shape key"):
+        scene = empty_scene()
+        scene.render.use_motion_blur = False
+        scene.view_layers[0].use_pass_vector = True
+        if kind == "armature":
+            board = bending_board()
+            board.location.x = 0.1
+        else:
+            board = square(size=2, location=(0, 6, 0), rotation=(math.pi / 2, 0, 0))
+            board.shape_key_add(name="Basis")
+            key = board.shape_key_add(name="Wide")
+            key.data[1].co.x += 0.5
+            key.data[2].co.z += 0.4
+            for frame in (1, 3):
+                key.value, board.location.x = 0.5 * (frame - 1), 0.1 * frame
+                key.keyframe_insert("value", frame=frame)
+                board.keyframe_insert("location", frame=frame)
+            for owner in (board, board.data.shape_keys):
+                for curve in owner.animation_data.action.fcurves:
+                    for point in curve.keyframe_points:
+                        point.interpolation = "LINEAR"
+        ours, theirs = render(frame=2)["Vector"], render("CYCLES", frame=2, samples=1)["Vector"]
+        assert not any("Vector" in note for note in notes()), notes()
+        off = numpy.abs(ours - theirs).max(axis=-1)
+        shown = numpy.abs(theirs).max(axis=-1) > 0.3
+        print(f"    {kind}: up to {numpy.abs(theirs).max():.1f} pixels, {shown.sum()} of them move; 95 % are within "
+              f"{numpy.quantile(off[shown], 0.95):.1e}")
+        assert shown.sum() > 100 and numpy.abs(theirs).max() > 2 and numpy.quantile(off[shown], 0.95) < 0.02
+
+
+def test_blur_of_what_deforms_against_cycles():
+    scene = empty_scene(96, 64)
+    bending_board(material("Shining", (1, 1, 1), "ShaderNodeEmission")[0])
+    scene.render.use_motion_blur, scene.render.motion_blur_shutter = True, 1.5
+    scene.uwvdb.samples = 128
+    ours, theirs = (passes["Combined"][..., 0] for passes in (render(frame=2), render("CYCLES", frame=2, samples=256)))
+    scene.render.use_motion_blur = False
+    sharp = render(frame=2)["Combined"][..., 0]
+    off, blur = numpy.abs(ours - theirs), numpy.abs(sharp - theirs)
+    print(f"    blur changes pixels by up to {blur.max():.2f}; the mean difference is {off.mean():.4f}, of the sharp "
+          f"picture {blur.mean():.4f}; the greatest is {off.max():.2f}")
+    # Noise of a pixel that an edge halves: 0.5 / sqrt(256) in Cycles, and here steps of half a pixel.
+    assert blur.max() > 0.4 and off.mean() < 0.2 * blur.mean() and off.max() < 0.12
+
+
 def test_motion_blur_against_cycles():
     """A shining board that moves while the shutter is open, at its three places."""
     for position in ("CENTER", "START", "END"):
@@ -238,6 +318,7 @@ def test_motion_blur_against_cycles():
         scene.uwvdb.samples = 256
         ours, theirs = (passes["Combined"][4, :, 0]
                         for passes in (render(frame=2), render("CYCLES", frame=2, samples=1024)))
+        assert not any("keys" in note for note in notes()), notes()
         assert ((theirs > 0.1) & (theirs < 0.9)).sum() > 8
         close(ours, theirs, 0.06, f"blur, {position}")
 
