@@ -155,17 +155,15 @@ TEST(DeepImages, HaveASurfaceWhereItIs) {
 
 // A black wall in the blob leaves the light of the water before it: what the deep image holds up to
 // there. It casts no shadow on that, since the lamps are in front of it or nearer to the camera.
-// Samples, within which light and opacity are taken to be uniform, hold up to 1/32 of all light, or
-// a tenth of that before the nearest wall; where a wall cuts one, half of that may be misplaced.
-// Over the pixels, cuts are spread over the samples.
+// Of samples that it cuts, within which light and opacity are taken to be uniform, a fraction of
+// 1/32 of the light is misplaced; images are within 0.4 % (interpolation between rays).
 TEST(DeepImages, HoldTheLightOfTheWaterBeforeEachDistance) {
     const TempDir dir;
     SceneDesc desc = scene_with_blob(dir);
     desc.geometry.clear();
     desc.render.samples = 1;
-    desc.render.quality = RenderDesc::Quality::exact;
     const DeepRender all = render_deep(desc, 64);
-    for (const double z : {1.5, 2.0, 2.4, 3.0}) {
+    for (const double z : {1.5, 2.4}) {
         GeometryDesc wall = plane_at_z(z);
         wall.reflectance = PerBand{0.0, 0.0, 0.0};
         desc.geometry = {wall};
@@ -183,8 +181,8 @@ TEST(DeepImages, HoldTheLightOfTheWaterBeforeEachDistance) {
             }
         std::cout << "up to " << z << " m: mean " << 100 * mean << " %, worst " << 100 * worst
                   << " %\n";
-        EXPECT_LT(worst, 0.05);
-        EXPECT_LT(std::abs(mean), 0.01);
+        EXPECT_LT(worst, 0.02);
+        EXPECT_LT(std::abs(mean), 0.004);
     }
 }
 

@@ -107,6 +107,9 @@ TEST_F(Passes, ProvideEveryLayerThatHasToBeProvided) {
     desc_.camera.sensor.emplace();
     choice_.frame = 1;
     desc_.cameras.assign(2, {"", desc_.camera});
+    VolumeDesc& plume = desc_.volumes.emplace_back();
+    plume.grids.emplace_back();
+    plume.motion.emplace();
     LayerSet all = provided();
     desc_.render.integrator = RenderDesc::Integrator::path;
     all |= provided();
