@@ -124,7 +124,7 @@ std::optional<GltfDeformation> GltfDeformations::of(const GltfNode& node) const 
     return deformation;
 }
 
-void MendedWeights::report(const std::string& name, std::vector<std::string>& warnings) const {
+void NormalisedWeights::report(const std::string& name, std::vector<std::string>& warnings) const {
     if (unweighted > 0)
         warnings.push_back(
             fmt::format("{}: {} vertices of skins have no weight; they follow the joint that they "
@@ -168,57 +168,57 @@ void DeformedPrimitive::read_skin(const std::string& mesh_name) {
     per_vertex_ = 4 * joints.size();
     const std::size_t vertices = joints[0].size() / 4;
     joints_.reserve(per_vertex_ * vertices);
-    shares_.reserve(per_vertex_ * vertices);
+    joint_weights_.reserve(per_vertex_ * vertices);
     for (std::size_t vertex = 0; vertex < vertices; ++vertex) {
         throw_if_stopped();
         for (std::size_t set = 0; set < joints.size(); ++set)
             for (std::size_t k = 4 * vertex; k < 4 * vertex + 4; ++k) {
                 joints_.push_back(static_cast<std::uint32_t>(joints[set][k]));
-                shares_.push_back(weights[set][k]);
+                joint_weights_.push_back(weights[set][k]);
             }
-        mend(vertex, mesh_name);
+        normalise(vertex, mesh_name);
     }
 }
 
-void DeformedPrimitive::mend(std::size_t vertex, const std::string& mesh_name) {
+void DeformedPrimitive::normalise(std::size_t vertex, const std::string& mesh_name) {
     const std::size_t first = per_vertex_ * vertex;
     double sum = 0;
     for (std::size_t k = first; k < first + per_vertex_; ++k) {
-        if (!(shares_[k] >= 0) || !std::isfinite(shares_[k]))
+        if (!(joint_weights_[k] >= 0) || !std::isfinite(joint_weights_[k]))
             document_.fail(
                 fmt::format("mesh '{}' has weights of joints that are negative or not finite; "
                             "normalise its weights and export it again",
                             mesh_name));
-        sum += double{shares_[k]};
-        if (shares_[k] > 0 && joints_[k] >= deformation_.file_from_bind.size())
+        sum += double{joint_weights_[k]};
+        if (joint_weights_[k] > 0 && joints_[k] >= deformation_.file_from_bind.size())
             document_.fail(fmt::format(
                 "mesh '{}' follows joint {} of skin '{}', which has {} joints; export "
                 "the mesh and its armature together",
                 mesh_name, joints_[k], deformation_.skin, deformation_.file_from_bind.size()));
     }
     if (sum > 0) {
-        if (std::abs(sum - 1) > k_weight_tolerance) ++mended_.unbalanced;
+        if (std::abs(sum - 1) > k_weight_tolerance) ++normalised_.unbalanced;
         for (std::size_t k = first; k < first + per_vertex_; ++k)
-            shares_[k] = static_cast<float>(double{shares_[k]} / sum);
+            joint_weights_[k] = static_cast<float>(double{joint_weights_[k]} / sum);
         return;
     }
-    ++mended_.unweighted;
+    ++normalised_.unweighted;
     if (joints_[first] >= deformation_.file_from_bind.size()) joints_[first] = 0;
-    shares_[first] = 1;
+    joint_weights_[first] = 1;
 }
 
 Affine DeformedPrimitive::file_from(std::size_t vertex) const {
     if (!has_skin()) return file_from_mesh_;
     Matrix3 linear(0.0);
     Vector3 offset(0.0);
-    double sum = 0;  // of the rounded shares, so that rounding does not scale the mesh
+    double sum = 0;  // of the rounded weights, so that rounding does not scale the mesh
     for (std::size_t k = per_vertex_ * vertex; k < per_vertex_ * (vertex + 1); ++k) {
-        if (shares_[k] == 0) continue;
+        if (joint_weights_[k] == 0) continue;
         const Affine& joint = deformation_.file_from_bind[joints_[k]];
-        const double share{shares_[k]};
-        linear += share * joint.linear();
-        offset += share * joint.offset();
-        sum += share;
+        const double weight{joint_weights_[k]};
+        linear += weight * joint.linear();
+        offset += weight * joint.offset();
+        sum += weight;
     }
     return {linear / sum, offset / sum};
 }

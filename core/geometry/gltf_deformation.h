@@ -47,8 +47,8 @@ class GltfDeformations {
     std::set<std::size_t> animated_;  // nodes whose weights some animation changes
 };
 
-/// How many vertices of skins had to be mended.
-struct MendedWeights {
+/// How many vertices of skins had to be normalised.
+struct NormalisedWeights {
     std::uint64_t unweighted = 0;  ///< have no weight; they follow the joint that is named first
     std::uint64_t unbalanced = 0;  ///< weights whose sum is not 1 by more than 1 %; scaled to it
 
@@ -75,12 +75,12 @@ class DeformedPrimitive {
     std::vector<float> tangents() const;
     /// Whether the map of the whole mirrors it; false for a skin.
     bool is_mirrored() const { return !has_skin() && file_from_mesh_.determinant() < 0; }
-    const MendedWeights& mended() const { return mended_; }
+    const NormalisedWeights& normalised() const { return normalised_; }
 
   private:
     bool has_skin() const { return !joints_.empty(); }
     void read_skin(const std::string& mesh_name);
-    void mend(std::size_t vertex, const std::string& mesh_name);
+    void normalise(std::size_t vertex, const std::string& mesh_name);
     /// An attribute after the morph targets, `width` numbers per vertex, of which they change
     /// three.
     std::vector<double> morphed(const char* semantic, std::size_t width) const;
@@ -94,8 +94,8 @@ class DeformedPrimitive {
     Affine file_from_mesh_;
     std::size_t per_vertex_ = 0;         // joints
     std::vector<std::uint32_t> joints_;  // empty: no skin
-    std::vector<float> shares_;          // of the joints; their sum is 1 up to rounding
-    MendedWeights mended_;
+    std::vector<float> joint_weights_;   // of the joints; their sum is 1 up to rounding
+    NormalisedWeights normalised_;
 };
 
 }  // namespace uw

@@ -186,7 +186,7 @@ class Sampler {
         });
     }
 
-    /// The same of rotations x, y, z, w, which turn at a steady rate.
+    /// Returns the value of a channel of rotations (x, y, z, w), which turn at a steady rate.
     Value turned_at(double time) const {
         return between(time, [&](const KnotSpan& span, const Value& a, const Value& b) -> Value {
             const Rotation turn = turned(rotation(a), rotation(b), span.fraction);

@@ -199,7 +199,7 @@ class JoinedMesh {
         return std::move(mesh_);
     }
 
-    const MendedWeights& mended() const { return mended_; }
+    const NormalisedWeights& normalised() const { return normalised_; }
 
   private:
     const Json* attribute(const GltfPlacement& placement, const char* semantic) const {
@@ -294,8 +294,8 @@ class JoinedMesh {
 
     void append_deformed(const GltfPlacement& placement) {
         const DeformedPrimitive primitive = deformed(document_, bytes_, placement);
-        mended_.unweighted += primitive.mended().unweighted;
-        mended_.unbalanced += primitive.mended().unbalanced;
+        normalised_.unweighted += primitive.normalised().unweighted;
+        normalised_.unbalanced += primitive.normalised().unbalanced;
         const auto add = [](std::vector<float>& to, const std::vector<float>& values) {
             to.insert(to.end(), values.begin(), values.end());
         };
@@ -436,7 +436,7 @@ class JoinedMesh {
          has_objects_ = false;
     bool is_mirrored_ = false;  // the placement in progress
     std::array<bool, 2> has_uvs_{};
-    MendedWeights mended_;
+    NormalisedWeights normalised_;
 };
 
 }  // namespace
@@ -444,8 +444,8 @@ class JoinedMesh {
 TriangleMesh GltfJoiner::join(const std::vector<GltfPlacement>& placements) {
     JoinedMesh joined(document_, bytes_);
     TriangleMesh mesh = joined.join(placements, materials_);
-    mended_.unweighted += joined.mended().unweighted;
-    mended_.unbalanced += joined.mended().unbalanced;
+    normalised_.unweighted += joined.normalised().unweighted;
+    normalised_.unbalanced += joined.normalised().unbalanced;
     return mesh;
 }
 

@@ -63,13 +63,13 @@ class GltfJoiner {
     TriangleMesh join(const std::vector<GltfPlacement>& placements);
 
     /// Those of all meshes so far.
-    const MendedWeights& mended() const { return mended_; }
+    const NormalisedWeights& normalised() const { return normalised_; }
 
   private:
     const GltfDocument& document_;
     GltfBytes& bytes_;
     GltfMaterials& materials_;
-    MendedWeights mended_;
+    NormalisedWeights normalised_;
 };
 
 /// The vertices of a placement that deforms. For gltf_*.cpp only. Refers to all.

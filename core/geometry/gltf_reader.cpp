@@ -332,7 +332,7 @@ MeshFile GltfSource::read(const std::optional<double>& time, std::vector<std::st
         }
         GltfJoiner joiner(document, parts_->bytes, parts_->materials);
         MeshFile meshes = parts_->contents(time).read(joiner);
-        joiner.mended().report(document.name(), warnings);
+        joiner.normalised().report(document.name(), warnings);
         return meshes;
     } catch (const Json::exception& error) {
         fail_broken_gltf(file_, error);

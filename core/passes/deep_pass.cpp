@@ -16,7 +16,7 @@ namespace uw {
 namespace {
 
 // What lies behind this transmittance has one sample: flattening in 32-bit floats would lose it.
-constexpr double k_least_transmittance = 1e-5;
+constexpr double k_min_transmittance = 1e-5;
 // The ends of the stretches that are merged to the pixel's samples: some where the transmittance
 // has fallen by equal steps, some by equal factors of the distance, since light of lamps near the
 // camera comes from the first decimetres however clear the water is.
@@ -90,7 +90,7 @@ class DeepPixel {
 // The last stretch ends where nothing is seen any more, or at the farthest surface.
 void DeepPixel::choose_ends() {
     const double far = through_.end();
-    const std::optional<double> dark = through_.distance_at(k_least_transmittance);
+    const std::optional<double> dark = through_.distance_at(k_min_transmittance);
     const double reach = dark ? std::min(far, *dark) : far;
     const double opacity = 1 - through_.mean_transmittance(reach);
     for (int i = 1; i < k_opacity_steps; ++i)

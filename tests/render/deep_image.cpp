@@ -155,8 +155,8 @@ TEST(DeepImages, HaveASurfaceWhereItIs) {
 
 // A black wall in the blob leaves the light of the water before it: what the deep image holds up to
 // there. It casts no shadow on that, since the lamps are in front of it or nearer to the camera.
-// Of samples that it cuts, within which light and opacity are taken to be uniform, a fraction of
-// 1/32 of the light is misplaced; images are within 0.4 % (interpolation between rays).
+// A wall cuts samples, within which light and opacity are taken to be uniform: a fraction of 1/32
+// of the light is misplaced; images are within 0.4 % (interpolation between rays).
 TEST(DeepImages, HoldTheLightOfTheWaterBeforeEachDistance) {
     const TempDir dir;
     SceneDesc desc = scene_with_blob(dir);
